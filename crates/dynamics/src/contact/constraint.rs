@@ -152,10 +152,10 @@ impl Constraint {
     }
 
     /// The same constraint with its force rows as derivative rows, which makes Q symmetric.
-    pub fn with_force_rows(&self) -> Self {
+    pub fn with_force_rows(self) -> Self {
         Constraint {
             other_derivative_rows: None,
-            ..self.clone()
+            ..self
         }
     }
 

@@ -534,6 +534,9 @@ impl SurfacePoint {
     /// Tilt of the force at a point that was over another segment i at the start; the positions are those of the point,
     /// a and b at start and end.
     fn tilt(&self, [start, end]: [[[f64; 2]; 3]; 2], at_start: impl Fn(usize) -> [f64; 2]) -> Tilt {
+        if let StartSegment::Same = self.from {
+            return Tilt::default();
+        }
         let over = |bulge: &Bulge, [s, a, b]: [[f64; 2]; 3]| {
             bulge.below(project(s, a, b)).raised(-self.rise)
         };
@@ -561,9 +564,14 @@ impl SurfacePoint {
     /// G_q = g_q - b_m(xi_q) - b_s(eta_q)    eq. (3.32)
     /// ```
     fn gaps(&self, at: &Configurations) -> [f64; 2] {
-        let [s, a, b] = self.places(|node| at.iterate([node])[0]);
-        let p = project(s, a, b);
+        let p = self.projection(at);
         [self.bulge.below(p).raised(-self.rise).gap, p.gap]
+    }
+
+    /// Projection of the point onto the chord of its segment in the iterate.
+    fn projection(&self, at: &Configurations) -> Projection {
+        let [s, a, b] = self.places(|node| at.iterate([node])[0]);
+        project(s, a, b)
     }
 
     /// (e_n.d_e)/l: the rotation of the segment in the increment.
@@ -576,12 +584,11 @@ impl SurfacePoint {
     /// gap of the constraint: when the constraint closes, the point is lower by this gap.
     fn rows(&self, gap: f64, at: &Configurations) -> (SegmentRows, Tilt) {
         let places = self.configurations(at);
-        let [_, of_chord] = self.gaps(at);
-        let mut rows = rows_between(places, (of_chord - gap, &self.bulge), at.form);
-        let tilt = match at.form {
-            RowForm::End => Tilt::default(),
-            RowForm::DiscreteGradient => self.tilt(places, |node| at.start([node])[0]),
+        let (height, tilt) = match at.form {
+            RowForm::End => (self.gaps(at)[1] - gap, Tilt::default()),
+            RowForm::DiscreteGradient => (0.0, self.tilt(places, |node| at.start([node])[0])),
         };
+        let mut rows = rows_between(places, (height, &self.bulge), at.form);
         if tilt.kappa != 0.0 {
             let [chord, _] = rows.chord();
             rows.force.normal = sum_of(1.0, &rows.force.normal, tilt.kappa, &chord.tangential);
@@ -660,6 +667,18 @@ impl MeanContact {
         (nodes, slaves)
     }
 
+    /// Mean of the gaps of the points in the iterate, eq. (3.18).
+    fn mean_gap(&self, at: &Configurations) -> f64 {
+        self.points.iter().map(|q| q.weight * q.gaps(at)[0]).sum()
+    }
+
+    /// Gap of the constraint in the end configuration, and the length to which the gap is relative.
+    pub(super) fn gap_and_scale(&self, pair: &Pair, at: &Configurations) -> (f64, f64) {
+        let length = |q: &SurfacePoint| q.weight * q.projection(at).length;
+        let scale = self.points.iter().map(length).sum();
+        (self.mean_gap(at) + pair.allowed[1], scale)
+    }
+
     /// The constraint of a slave node: gaps and rows of its points, summed with their weights,
     ///
     /// ```text
@@ -677,7 +696,7 @@ impl MeanContact {
         let mut sums: [PerDof<f64>; 4] = from_fn(|_| PerDof::zeros(2 * nodes.len()));
         let mut at_nodes = sums.each_mut().map(|row| row.as_chunks_mut::<2>().0);
         let [allowed_before, allowed] = pair.allowed;
-        let mean: f64 = (self.points.iter().map(|q| q.weight * q.gaps(at)[0])).sum();
+        let mean = self.mean_gap(at);
         let (mut gap, mut scale, mut turn) = (mean + allowed, 0.0, 0.0);
         let mut stretch = 0.0;
         for point in self.points.iter() {

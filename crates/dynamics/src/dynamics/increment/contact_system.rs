@@ -112,8 +112,8 @@ impl System<'_> {
             .any(|c| c.other_derivative_rows.is_some());
         match with_derivatives {
             Err(Cause::Lcp(_)) if are_other => {
-                let symmetric: Vec<Constraint> =
-                    constraints.iter().map(|c| c.with_force_rows()).collect();
+                let with_force_rows = |&c: &&Constraint| c.clone().with_force_rows();
+                let symmetric: Vec<Constraint> = constraints.iter().map(with_force_rows).collect();
                 let symmetric: Vec<&Constraint> = symmetric.iter().collect();
                 self.solve_once(&symmetric, constant_terms, guess, closed)
             }

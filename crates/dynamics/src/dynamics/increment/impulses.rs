@@ -111,7 +111,7 @@ impl Impulses {
         let configurations = problem.configurations(&start.u, &start.u);
         let rows = |constraint: &Constraint| match at_start {
             true => constraint.at_start(&configurations).with_force_rows(),
-            false => constraint.with_force_rows(),
+            false => constraint.clone().with_force_rows(),
         };
         let mut struck = std::mem::take(&mut self.of_iterate);
         struck.clear();
