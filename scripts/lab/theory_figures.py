@@ -448,7 +448,7 @@ def hybrid() -> Drawing:
     boxes = [
         ((20.0, 30.0), (120.0, 60.0), ["problem (8.2)"]),
         ((170.0, 30.0), size, ["active set from the", "last states, joints"]),
-        ((360.0, 30.0), size, ["10, 40, 160 sweeps,", "active set each"]),
+        ((360.0, 30.0), size, ["sweeps, proximal steps,", "active set each"]),
         ((550.0, 30.0), (185.0, 60.0), ["Lemke's method,", "lexicographic rule"]),
         (
             (170.0, 130.0),

@@ -76,6 +76,6 @@ fn states_of_joints_change_together_to_the_answers_of_single_contacts() {
     let [single, together] = work;
     assert!(together.active_set_iterations < single.active_set_iterations);
     // what cycles with single contacts ends with joints
-    assert!(single.gauss_seidel_sweeps > 1000);
+    assert!(single.gauss_seidel_sweeps > 100);
     assert_eq!(together.gauss_seidel_sweeps, 0);
 }

@@ -16,12 +16,13 @@ use super::problems::{
     ContactState, Counters, FrictionalLcp, FrictionalSolution, LcpError, Method, Spare, Stability,
     expect_size,
 };
+use super::proximal::proximal_states;
 use super::reduced;
 use super::residual::{TOLERANCE, frictional_residual};
 use super::scaled::Scaled;
 
-/// Numbers of Gauss-Seidel sweeps before the first, second and third restart of the active set.
-const SWEEPS: [usize; 3] = [10, 40, 160];
+/// Number of Gauss-Seidel sweeps before the active set starts anew.
+const SWEEPS: usize = 10;
 
 /// Size of the largest arena that is kept for the next problem (bytes): with a larger one, allocating memory costs
 /// little compared with the solve.
@@ -34,7 +35,7 @@ const PATHS: usize = 4;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum LcpMethod {
     /// The first of these methods that succeeds: active set from warm states, active set after Gauss-Seidel sweeps,
-    /// Lemke's method.
+    /// active set after proximal steps, Lemke's method.
     #[default]
     Hybrid,
     /// Lemke's method from the start.
@@ -145,9 +146,10 @@ fn from_states(
     }
 }
 
-/// Calls the active set from the warm states, contact by contact, until a call succeeds. If it does not end soon,
-/// joints are used. If it still fails with kept factors, whose round-off may move nearly identical contacts, these
-/// factors are dropped. Then it starts from the states after more and more Gauss-Seidel sweeps, which break its cycles.
+/// Calls the active set from the warm states, contact by contact, until a call succeeds. If the first call does not end
+/// soon, the second one uses joints. If the active set still fails, kept factors are dropped, because their round-off may
+/// move nearly identical contacts. Then the active set starts from the states after Gauss-Seidel sweeps, which break its
+/// cycles, and at last from the states after proximal steps.
 fn iterate(
     problem: &FrictionalLcp,
     scaled: &Scaled,
@@ -159,7 +161,7 @@ fn iterate(
         None => first_states(scaled),
     };
     let joints = known.map_or_else(Joints::none, |known| Joints::of(known.joints));
-    let mut rounds = SWEEPS.into_iter();
+    let mut ways = [Way::Sweeps, Way::Steps].into_iter();
     let mut has_kept = kept.has_factors();
     let mut changes = Changes::Alone(&joints);
     loop {
@@ -181,16 +183,29 @@ fn iterate(
             changes = Changes::Together(&joints);
             continue;
         }
-        if std::mem::take(&mut has_kept) {
-            kept.forget();
-            continue;
-        }
+        kept.forget();
         if scaled.free > 0 {
-            return None;
+            match std::mem::take(&mut has_kept) {
+                true => continue,
+                false => return None,
+            }
         }
-        project(scaled, &mut p);
-        states = gauss_seidel(scaled, &mut p, rounds.next()?, counters);
+        states = match ways.next()? {
+            Way::Sweeps => {
+                project(scaled, &mut p);
+                gauss_seidel(scaled, &mut p, SWEEPS, counters)
+            }
+            Way::Steps => proximal_states(scaled, states, counters)?,
+        };
     }
+}
+
+/// A way to other states, from which the active set starts anew.
+enum Way {
+    /// Gauss-Seidel sweeps.
+    Sweeps,
+    /// Proximal steps.
+    Steps,
 }
 
 /// The warm states, in which frictionless contacts have only one closed state.

@@ -5,9 +5,10 @@
 //!
 //! The frictional problem ([`FrictionalLcp`]) has unilateral contacts with Coulomb friction, coupled by a symmetric
 //! matrix Q. [`solve_frictional`] finds the states open, stick, slip+ and slip- of the contacts: with a warm active set
-//! first, with Gauss-Seidel sweeps if the active set cycles, and with Lemke's method if nothing else succeeds. Problems
-//! of many contacts are solved by blocks ([`BlockIteration`]); the last steps of this iteration accelerate it
-//! ([`Acceleration`]). Every answer is checked by a residual whose computation shares nothing with the method.
+//! first, with Gauss-Seidel sweeps and proximal steps if the active set cycles, and with Lemke's method if nothing else
+//! succeeds. Problems of many contacts are solved by blocks ([`BlockIteration`]); the last steps of this iteration
+//! accelerate it ([`Acceleration`]). Every answer is checked by a residual whose computation shares nothing with the
+//! method.
 //!
 //! All methods work on a problem scaled by powers of two, so that the answer of a problem whose
 //! lengths or forces are multiplied by powers of two is the same to the last bit.
@@ -25,6 +26,7 @@ mod kept;
 mod known;
 mod lemke;
 mod problems;
+mod proximal;
 mod reduced;
 mod residual;
 mod scaled;

@@ -21,6 +21,7 @@ pub(crate) type Found<'s, 'a> = (&'s [ContactState], [List<'a, f64>; 2], List<'a
 /// friction law does not change. Units follow the penetration, because it drives the forces: a much larger gap or slip
 /// must not make a closed contact inaccurate. Free unknowns have the unit of length; a displacement by forces without
 /// contact counts as a penetration.
+#[derive(Clone)]
 pub(crate) struct Scaled<'a> {
     /// Arena in which the lists of the problem and of its solution lie.
     pub arena: &'a Bump,
@@ -121,6 +122,21 @@ impl<'a> Scaled<'a> {
             units,
             length,
         })
+    }
+
+    /// Becomes the problem `of` with a part eps of its diagonal, the weight, that holds p near the forces p0:
+    ///
+    /// ```text
+    /// v = Q p + b + eps diag(Q) (p - p0)
+    /// ```
+    pub fn set_near(&mut self, of: &Scaled, weight: f64, p0: &[f64]) {
+        let size = self.size();
+        for (k, force) in p0.iter().enumerate() {
+            let diagonal = k * (size + 1);
+            let part = weight * of.entries[diagonal];
+            self.entries[diagonal] = of.entries[diagonal] + part;
+            self.b[k] = of.b[k] - part * force;
+        }
     }
 
     /// Length of p.
