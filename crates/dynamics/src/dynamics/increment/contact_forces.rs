@@ -8,7 +8,7 @@ use crate::contact::tolerances::{LIMIT_SLIP, SETTLED_OVERLAP, SOLVED_GAP};
 use crate::contact::{ClosedPair, ClosedPairs, Constraint};
 use crate::dynamics::results::Cause;
 use crate::dynamics::step::System;
-use crate::lcp::Stability;
+use crate::lcp::{ContactState, Stability};
 use crate::linear::larger;
 
 /// Number of constraints by which the problem of a pass grows at least if the constraints in it
@@ -37,6 +37,8 @@ pub(crate) struct ContactForces {
 struct Choice {
     /// For every constraint whether it is in the problem.
     inside: Vec<bool>,
+    /// States of all constraints, from which the problem starts.
+    states: Vec<ContactState>,
     /// Gaps and slips without contact forces.
     free: Vec<[f64; 2]>,
     /// Gaps and slips with the contact forces.
@@ -127,6 +129,7 @@ impl ContactForces {
         let mut choice = std::mem::take(&mut self.choice);
         let Choice {
             inside,
+            states,
             free,
             after,
             terms,
@@ -135,20 +138,26 @@ impl ContactForces {
         } = &mut choice;
         std::mem::swap(before, &mut self.closed);
         self.closed.clear();
-        let was_closed = |constraint: &Constraint| before.closes(constraint.key);
+        let keys: SmallVec<[_; FEW]> = self.constraints.iter().map(|c| c.key).collect();
+        states.clear();
+        states.extend(before.states_among(&keys));
         inside.clear();
-        inside.extend(self.constraints.iter().map(was_closed));
+        inside.extend(states.iter().map(|state| state.is_closed()));
         // g + Gn y and Dt + Gt y, eq. (5.2)
         let mut response = Response::begin(system, [d_p, r], &self.constraints)?;
         response.gaps_and_slips(system, self.constraints.iter(), free);
         response.show_pins(system);
-        let mut entered =
-            inside.contains(&true) || self.enter(inside, free, overlap) || system.free().is_some();
+        let mut entered = inside.contains(&true)
+            || self.enter(inside, free, (overlap, 0))
+            || system.free().is_some();
         let mut tips = 0..TIPS;
+        let mut least = 1;
         while entered {
             let constraints: SmallVec<[_; FEW]> = chosen(&self.constraints, inside).collect();
             terms.clear();
             terms.extend(chosen(free, inside));
+            guess.states.clear();
+            guess.states.extend(chosen(states, inside));
             guess.take_over(&constraints, before, weight);
             let solved = system.solve_contact(
                 &constraints,
@@ -172,11 +181,21 @@ impl ContactForces {
                 .map(|(constraint, pair)| (constraint, pair.force));
             response.set_forces(system, acting);
             response.gaps_and_slips(system, self.constraints.iter(), after);
-            entered = self.enter(inside, after, overlap);
+            self.take_states(states);
+            entered = self.enter(inside, after, (overlap, least));
+            least *= 2;
         }
         self.mark_slips(&choice);
         self.choice = choice;
         Ok(response.end(system, du)?)
+    }
+
+    /// Sets the states of all constraints to those of the answer.
+    fn take_states(&self, states: &mut [ContactState]) {
+        let pairs = self.iter().map(|(_, pair)| pair);
+        for (state, pair) in states.iter_mut().zip(pairs) {
+            *state = pair.map_or(ContactState::Open, |pair| pair.state);
+        }
     }
 
     /// Marks the closed pairs that slip in the solution; Dt_f and g_f are slip and gap without contact forces,
@@ -212,16 +231,27 @@ impl ContactForces {
     }
 
     /// Adds those constraints to the problem whose gaps `after` the correction would be overlaps of more than `overlap`
-    /// times their scale. Returns whether any constraint has entered the problem.
-    fn enter(&self, inside: &mut [bool], after: &[[f64; 2]], overlap: f64) -> bool {
-        let mut entered = false;
-        let constraints = self.constraints.iter().zip(after);
-        for ((constraint, [gap, _]), inside) in constraints.zip(inside) {
-            if !*inside && *gap < -overlap * constraint.scale {
-                (*inside, entered) = (true, true);
-            }
+    /// times their scale. If fewer than `least` constraints overlap, the nearest of the others enter with them: among
+    /// nearly redundant constraints, each one that closes makes the next one overlap. Returns whether any constraint
+    /// has entered the problem.
+    fn enter(
+        &self,
+        inside: &mut [bool],
+        after: &[[f64; 2]],
+        (overlap, least): (f64, usize),
+    ) -> bool {
+        let gap = |k: usize| after[k][0] / self.constraints[k].scale;
+        let outside = |k: &usize| !inside[*k];
+        let overlaps = |k: &usize| gap(*k) < -overlap;
+        let count = (0..inside.len()).filter(outside).filter(overlaps).count();
+        if count == 0 {
+            return false;
         }
-        entered
+        let mut nearest: Vec<usize> = (0..inside.len()).filter(outside).collect();
+        nearest.sort_by(|&i, &k| gap(i).total_cmp(&gap(k)));
+        nearest.truncate(count.max(least));
+        nearest.iter().for_each(|&k| inside[k] = true);
+        true
     }
 }
 
@@ -239,7 +269,7 @@ mod tests {
     use super::*;
     use crate::contact::{Rows, testing};
     use crate::dynamics::step::{FactoredMatrix, Meter};
-    use crate::lcp::{ContactState, LcpMethod};
+    use crate::lcp::LcpMethod;
     use crate::linear::{Assembled, Transformation, linear_solver};
     use crate::model::SolverChoice;
 

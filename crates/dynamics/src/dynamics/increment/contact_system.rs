@@ -9,8 +9,6 @@
 
 use std::collections::BTreeMap;
 
-use smallvec::SmallVec;
-
 use super::equal_forces::FIRST_WEIGHT;
 use crate::contact::{ClosedPair, ClosedPairs, Constraint, ConstraintGroup};
 use crate::dynamics::results::{Cause, FailedLcp};
@@ -33,7 +31,7 @@ pub(crate) struct Guess {
 }
 
 impl Guess {
-    /// Sets states and forces to those of the pairs closed `before`; the answer is sought near them with a weight.
+    /// Sets the forces to those of the pairs closed `before`; the answer is sought near them with a weight.
     pub fn take_over(
         &mut self,
         constraints: &[&Constraint],
@@ -43,9 +41,6 @@ impl Guess {
         let forces = self.forces.get_or_insert_default();
         forces.clear();
         forces.extend(constraints.iter().map(|c| before.force(c.key)));
-        self.states.clear();
-        let keys: SmallVec<[_; FEW]> = constraints.iter().map(|c| c.key).collect();
-        self.states.extend(before.states_among(&keys));
         self.weight = weight;
     }
 
