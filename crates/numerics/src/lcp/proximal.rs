@@ -1,5 +1,5 @@
-//! States near those of the answer of a problem whose contacts are nearly one: the answer of the proximal point method,
-//! which holds every force near that of the step before. See docs/theory/complementarity.md, The hybrid.
+//! The proximal point method, which finds states near those of the answer if contacts are nearly redundant: each step
+//! solves a problem that holds the forces near those of the previous step. See docs/theory/complementarity.md, The hybrid.
 
 use super::dense::{List, filled};
 use super::hybrid::{Changes, Outcome, active_set};
@@ -8,22 +8,23 @@ use super::kept::KeptFactors;
 use super::problems::{ContactState, Counters};
 use super::scaled::Scaled;
 
-/// Weight of the first step, a part of the diagonal of Q.
+/// Weight of the first step, relative to the diagonal of Q.
 const FIRST_WEIGHT: f64 = 0.1;
 
-/// Weight below which the states of a step are as good as those of the answer.
+/// Weight below which the states of a step are taken for those of the answer, relative to the diagonal of Q.
 const LEAST_WEIGHT: f64 = 1e-6;
 
-/// Ratio of the weight to that of the step before; its inverse after a step whose states repeat.
+/// Factor of the weight after a step that ends; after a step whose states repeat, the weight is divided by this factor.
 const DECREASE: f64 = 0.5;
 
-/// Steps at most.
+/// Largest number of steps.
 const STEPS: usize = 60;
 
-/// The states after proximal steps from some states and no forces; none where these come to no end.
+/// The states after proximal steps from the given states and from zero forces; `None` if the weight does not fall below
+/// [`LEAST_WEIGHT`].
 ///
-/// A step is the active set from the states of the step before. Where Q is not positive definite, contacts that are
-/// nearly one make its states repeat below some weight; steps with larger ones then move the forces on, until one of
+/// A step is the active set from the states of the previous step. If Q is not positive definite, nearly redundant
+/// contacts make the states repeat below some weight. Steps with a larger weight then move the forces on, until one of
 /// these contacts opens.
 pub(crate) fn proximal_states<'a>(
     scaled: &Scaled<'a>,
@@ -59,10 +60,10 @@ mod tests {
     use super::*;
     use crate::lcp::{FreeUnknowns, FrictionalLcp};
 
-    /// Qnn = [1, 1.2; 0.8, 1] is not positive definite: with both contacts closed the forces are -2 and 2.5, the answer
-    /// has the second one alone.
+    /// Qnn = [1, 1.2; 0.8, 1] makes the active set cycle: with both contacts closed the forces are -2 and 2.5; the answer
+    /// has the second contact closed alone.
     #[test]
-    fn contacts_that_are_nearly_one_get_the_states_of_an_answer() {
+    fn nearly_redundant_contacts_get_the_states_of_an_answer() {
         let mut q = DMatrix::identity(4, 4);
         for (i, j, entry) in [(0, 1, 1.2), (1, 0, 0.8)] {
             q[(i, j)] = entry;

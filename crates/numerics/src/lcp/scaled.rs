@@ -124,7 +124,7 @@ impl<'a> Scaled<'a> {
         })
     }
 
-    /// Becomes the problem `of` with a part eps of its diagonal, the weight, that holds p near the forces p0:
+    /// Makes this problem the problem `of` with a proximal term, whose `weight` eps holds p near the forces p0:
     ///
     /// ```text
     /// v = Q p + b + eps diag(Q) (p - p0)
