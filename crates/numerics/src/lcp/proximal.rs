@@ -60,8 +60,8 @@ mod tests {
     use super::*;
     use crate::lcp::{FreeUnknowns, FrictionalLcp};
 
-    /// Qnn = [1, 1.2; 0.8, 1] makes the active set cycle: with both contacts closed the forces are -2 and 2.5; the answer
-    /// has the second contact closed alone.
+    /// The symmetric part of Qnn = [1, 1.2; 0.8, 1] is singular. With both contacts closed the forces are -2 and 2.5; in
+    /// the answer only the second contact is closed.
     #[test]
     fn nearly_redundant_contacts_get_the_states_of_an_answer() {
         let mut q = DMatrix::identity(4, 4);
