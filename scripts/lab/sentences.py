@@ -86,7 +86,7 @@ def of_markdown(path: str, text: str) -> Sentences:
             elif sum(len(re.findall(r"[A-Za-z]{3,}", cell)) for cell in cells) > 4:
                 said = [f"{head}: {cell}" if head else cell for head, cell in zip(heads, cells)]
                 found.append((f"{path}:{number}", " | ".join(said)))
-        elif stripped and not is_row and not re.match(r"#|<!--|!\[", stripped):
+        if stripped and not is_row and not re.match(r"#|<!--|!\[", stripped):
             start = start if paragraph else number
             paragraph.append(stripped)
     close()
