@@ -79,7 +79,7 @@ def of_markdown(path: str, text: str) -> Sentences:
         is_row = re.match(r"\|.*\|$", stripped)
         if not is_row:
             heads = []
-        elif not re.match(r"\|[-| :]+$", stripped):
+        elif not re.match(r"\|[-| :]*-[-| :]*$", stripped):
             cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", stripped)[1:-1]]
             if not heads:
                 heads = cells
