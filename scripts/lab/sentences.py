@@ -79,14 +79,14 @@ def of_markdown(path: str, text: str) -> Sentences:
         is_row = re.match(r"\|.*\|$", stripped)
         if not is_row:
             heads = []
-        elif not re.match(r"\|[-| :]+$", stripped):
+        elif not re.match(r"\|[-| :]*-[-| :]*$", stripped):
             cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", stripped)[1:-1]]
             if not heads:
                 heads = cells
             elif sum(len(re.findall(r"[A-Za-z]{3,}", cell)) for cell in cells) > 4:
                 said = [f"{head}: {cell}" if head else cell for head, cell in zip(heads, cells)]
                 found.append((f"{path}:{number}", " | ".join(said)))
-        elif stripped and not is_row and not re.match(r"#|<!--|!\[", stripped):
+        if stripped and not is_row and not re.match(r"#|<!--|!\[", stripped):
             start = start if paragraph else number
             paragraph.append(stripped)
     close()
