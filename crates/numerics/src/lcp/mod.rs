@@ -13,6 +13,7 @@
 //! All methods work on a problem scaled by powers of two, so that the answer of a problem whose
 //! lengths or forces are multiplied by powers of two is the same to the last bit.
 
+mod active_set;
 mod anderson;
 mod basis;
 mod block_iteration;
@@ -20,6 +21,7 @@ mod dense;
 mod exchange;
 mod free;
 mod free_solution;
+mod gauss_seidel;
 mod hybrid;
 mod joints;
 mod kept;

@@ -1,8 +1,8 @@
 //! The proximal point method, which finds states near those of the answer if contacts are nearly redundant: each step
 //! solves a problem that holds the forces near those of the previous step. See docs/theory/complementarity.md, The hybrid.
 
+use super::active_set::{Changes, Outcome, active_set};
 use super::dense::{List, filled};
-use super::hybrid::{Changes, Outcome, active_set};
 use super::joints::Joints;
 use super::kept::KeptFactors;
 use super::problems::{ContactState, Counters};
