@@ -71,7 +71,7 @@ pub fn extents(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
     })
 }
 
-/// Number of members up to which a group is not split further.
+/// Number of members up to which a group of the hierarchy is not split further.
 const GROUP: usize = 8;
 /// Relative growth of a distance that covers its round-off.
 const DISTANCE_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
@@ -130,7 +130,7 @@ impl Circle {
     }
 }
 
-/// A binary hierarchy of circles: all members, halves of them, quarters, down to small groups.
+/// A binary hierarchy of circles: all members, halves, quarters, and so on down to small groups.
 ///
 /// Groups are split at the median of the centres along their longer extent, with ties by index, so
 /// the hierarchy depends only on the circles.
@@ -138,7 +138,7 @@ impl Circle {
 pub struct CircleTree {
     /// The members with their indices; every group is a range of this list.
     members: Vec<(Circle, u32)>,
-    /// Circle and range of group 1, which is the whole, and of the halves 2k and 2k + 1 of every
+    /// Circle and range of every group: group 1 contains all members, and the groups 2k and 2k + 1 are the halves of
     /// group k.
     groups: Vec<(Circle, [usize; 2])>,
 }
@@ -253,8 +253,8 @@ impl CircleTree {
         }
     }
 
-    /// Appends all overlapping pairs of a member of this hierarchy and one of the other; two groups
-    /// are compared only when their circles overlap.
+    /// Appends all overlapping pairs of a member of this hierarchy and a member of another hierarchy; two groups are
+    /// compared only when their circles overlap.
     pub fn overlaps(&self, other: &CircleTree, found: &mut Vec<[u32; 2]>) {
         if self.members.is_empty() || other.members.is_empty() {
             return;

@@ -64,7 +64,7 @@ impl Archive<'_> {
     /// Writes a value, or replaces it by the value that is read.
     ///
     /// # Errors
-    /// The value that is read does not have this type.
+    /// The archive holds a value of another type.
     pub fn transfer<T: Serialize + DeserializeOwned>(
         &mut self,
         value: &mut T,
@@ -85,7 +85,7 @@ impl Archive<'_> {
     /// Writes values, or replaces them by values that are read.
     ///
     /// # Errors
-    /// The values that are read do not have this type or number.
+    /// The archive holds values of another type, or another number of them.
     pub fn transfer_values<T: Serialize + DeserializeOwned + Clone>(
         &mut self,
         values: &mut [T],

@@ -1,4 +1,4 @@
-//! Makes decks with parts and an assembly flat: every instance gets the cards of its part, whose spans name the
+//! Makes decks with parts and an assembly flat: every instance gets the cards of its part, and their spans name the
 //! instance. The reader decides what a name or a number means in an instance.
 
 use super::card::{Card, Instance, Placement};
@@ -53,7 +53,7 @@ pub(in crate::deck) fn flatten(deck: Deck, sources: &mut Sources, d: &mut Diagno
     flat
 }
 
-/// Number of an instance and index of its part; zero and `None` for cards outside instances.
+/// Number of an instance and index of its part; for cards outside instances zero and `None`.
 #[derive(Default)]
 struct Copy {
     instance: u32,
@@ -180,7 +180,7 @@ pub(super) struct Structure {
     /// The level of the next card.
     level: Level,
     has_assembly: bool,
-    /// Whether the last card is reported to be out of place: of several such cards in a row, only the first is
+    /// Whether the last card has been reported to be out of place: of several such cards in a row, only the first is
     /// reported.
     misplaced: bool,
 }
@@ -310,7 +310,7 @@ fn head(level: Level) -> Option<&'static str> {
     }
 }
 
-/// Whether a card may stand here as far as parts and the assembly decide; the order of model and steps is not checked.
+/// Whether parts and the assembly allow a card at its place; the order of model and steps is not checked.
 fn takes(level: Level, card: &Card) -> bool {
     if card.keyword.status != Status::Read {
         return true;
@@ -359,7 +359,7 @@ pub(super) fn report_open(level: Level, span: Span, d: &mut Diagnostics) {
 }
 
 /// Largest deviation of the axis of a rotation from the normal of the plane, relative to the length of the axis:
-/// numbers of a deck have six digits or more.
+/// the deviation allows for numbers of six digits.
 const TILT: f64 = 1e-6;
 
 /// Reads the position of an instance; reports a position out of the plane.

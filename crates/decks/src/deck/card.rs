@@ -18,7 +18,7 @@ pub struct Card {
     pub span: Span,
     /// Whether an error of the keyword line has been reported.
     pub faulty: bool,
-    /// Whether the deck of a later job adds this card to the model of the job that it continues.
+    /// Whether the deck of a later job adds this card to the model of the earlier job.
     pub added: bool,
     /// Data lines of the card.
     pub rows: DataLines,
@@ -44,7 +44,7 @@ impl Card {
         format!("*{}", self.keyword.name)
     }
 
-    /// The same card, with its names and numbers read as those of an instance of a part.
+    /// The same card, with its names and numbers read as names and numbers of an instance of a part.
     pub(crate) fn in_instance(mut self, instance: u32) -> Card {
         self.span.instance = instance;
         for param in &mut self.params {
@@ -56,7 +56,7 @@ impl Card {
         self.with_rows_in(instance)
     }
 
-    /// The same card, with the names and numbers in its rows read as those of an instance of a part.
+    /// The same card, with the names and numbers in its rows read as names and numbers of an instance of a part.
     pub(crate) fn with_rows_in(mut self, instance: u32) -> Card {
         self.rows.instance = instance;
         self
@@ -109,7 +109,7 @@ impl Card {
         self.value(name).and_then(|value| value.integer(d))
     }
 
-    /// Marks all parameters and data lines as read: another message says that the card is left out.
+    /// Marks all parameters and data lines as read, because another message says that the card is left out.
     pub fn leave_out(&self) {
         self.params.iter().for_each(|param| param.used.set(true));
         self.rows.read.set(ALL_ROWS);
@@ -154,7 +154,7 @@ pub struct DataLines {
     read: Cell<usize>,
 }
 
-/// A number larger than the number of rows of any card.
+/// Number of read rows that stands for all rows: no card has as many rows.
 const ALL_ROWS: usize = usize::MAX;
 
 /// A block of consecutive lines of a file without a keyword line among them.
@@ -206,7 +206,7 @@ impl DataLines {
         self.iter().nth(index)
     }
 
-    /// All rows in order.
+    /// All rows of the card in order.
     pub fn iter(&self) -> impl Iterator<Item = Line<'_>> + Clone {
         let rows = self.lines().flat_map(Lines::data).zip(1..);
         let rows = rows.map(|(row, number)| {

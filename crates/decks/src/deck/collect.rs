@@ -22,7 +22,7 @@ use std::sync::Arc;
 pub struct Deck {
     /// Cards with a known keyword in the order of the deck; the cards of an included file stand in its place.
     pub cards: Vec<Card>,
-    /// Whether a file is missing, which is reported: the missing file might define any name.
+    /// Whether a file is missing (which has been reported), so that it might define any name.
     pub incomplete: bool,
     /// Whether a card is left out because of a reported error.
     pub dropped: bool,
@@ -30,7 +30,7 @@ pub struct Deck {
     pub suspects: HashSet<String>,
     /// Instances of parts; a span refers to an instance by its number, from 1.
     pub instances: Vec<Instance>,
-    /// Asked whether the reading has been cancelled.
+    /// Object that tells whether the reading has been cancelled.
     pub interrupt: Interrupt,
 }
 
@@ -61,7 +61,7 @@ const DEEPEST: usize = 20;
 /// Largest number of files of one deck.
 const MOST_FILES: usize = 1000;
 
-/// Cards of the model that may stand in the deck of a job that continues an earlier one.
+/// Cards of the model that may stand in the deck of a job that continues an earlier job.
 const ADDED: [&str; 8] = [
     "HEADING",
     "AMPLITUDE",
@@ -160,7 +160,7 @@ impl OpenFile {
     }
 }
 
-/// What happens to the data lines that come next.
+/// Treatment of the data lines that come next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RowRule {
     /// No keyword stands before the data lines.
@@ -171,7 +171,7 @@ enum RowRule {
     Define,
     /// The data lines are left out.
     Skip,
-    /// The last card has no data lines by definition, so data lines are an error.
+    /// The last card cannot have data lines, so data lines are an error.
     Refuse,
 }
 
@@ -275,7 +275,7 @@ impl Collector<'_> {
         }
     }
 
-    /// Reports the first one of some lines.
+    /// Reports an error at the first of some lines.
     fn refuse(&mut self, lines: Lines, message: String) {
         if let Some(line) = lines.data().next() {
             self.d.error(Code::StrayData, line.span(), message);
@@ -303,7 +303,7 @@ impl Collector<'_> {
         }
     }
 
-    /// Adds a keyword line with its continuation linesfrom `rest`, and reads the file that it names.
+    /// Adds a keyword line with its continuation lines from `rest`, and reads the file that it names.
     fn keyword_line<'l>(&mut self, line: Line<'l>, rest: &mut Lines<'l>) {
         let mut pieces = Vec::new();
         let lines = continued(line, rest);
@@ -395,7 +395,7 @@ impl Collector<'_> {
         pieces.iter().for_each(|piece| self.suspect(piece));
     }
 
-    /// Records the name that a piece with a reported error may define.
+    /// Records the name that a part of the deck with a reported error may define.
     fn suspect(&mut self, piece: &Piece) {
         let (_, value) = piece.text.assignment();
         self.deck
@@ -486,7 +486,7 @@ impl Collector<'_> {
         self.rows = RowRule::Refuse;
     }
 
-    /// Checks that the step and increment of `*RESTART, READ` are those of the checkpoint.
+    /// Checks that `*RESTART, READ` names the step and increment of the checkpoint.
     fn check_place(&mut self, card: &Card, earlier: &EarlierDeck) {
         let [step, increment] = earlier.place;
         let asked = |name, d: &mut Diagnostics| card.integer(name, d).map(|number| number as usize);
@@ -570,7 +570,7 @@ impl Collector<'_> {
         Ok((path, content))
     }
 
-    /// Path of a file, relative to the including file or else to the main deck.
+    /// Path of a file, relative to the including file or, if there is no such file, to the main deck.
     fn find(&self, path: &str) -> Result<PathBuf, String> {
         let (Some(first), Some(last)) = (self.open.first(), self.open.last()) else {
             return Err("this deck was not read from a file".to_string());
@@ -589,7 +589,7 @@ impl Collector<'_> {
     }
 }
 
-/// A keyword line and its continuation: while a line ends with a comma, the next data line belongs to it.
+/// A keyword line and its continuation: while a line ends with a comma, the next line continues the keyword line.
 fn continued<'l>(first: Line<'l>, rest: &mut Lines<'l>) -> Vec<Line<'l>> {
     let mut all = vec![first];
     while all.last().is_some_and(|line| line.ends_with_comma()) {

@@ -18,8 +18,8 @@ pub struct ClosedPair {
     pub force: [f64; 2],
     /// Coefficient of friction mu of the pair.
     pub mu: f64,
-    /// Whether the pair sticks or slides in the solution of the complementarity problem. The force of a sliding pair is
-    /// at its limit, though the pair need not have moved.
+    /// Whether the pair sticks or slides in the solution of the complementarity problem. The tangential force of a
+    /// sliding pair is at the friction limit, though the pair need not have moved.
     pub state: ContactState,
     /// Whether the pair has slipped.
     pub slips: bool,
@@ -50,8 +50,7 @@ impl ClosedPair {
         if self.slips { excess.abs() } else { excess }
     }
 
-    /// The constraint of the pair between other configurations; the same target holds it at their
-    /// start.
+    /// The constraint of the pair between other configurations, with the same target at their start.
     pub fn constraint(&self, at: &Configurations) -> Constraint {
         Constraint {
             mu: self.mu,
@@ -111,7 +110,7 @@ impl ClosedPairs {
         self.0.iter()
     }
 
-    /// Whether a node belongs to one of the closed means (surface to surface).
+    /// Whether a node belongs to a constraint whose mean gap is closed (surface to surface).
     pub(super) fn means_have(&self, node: usize) -> bool {
         let mut means = self.0.iter().filter_map(|pair| pair.source.target.mean());
         means.any(|mean| mean.has(node))

@@ -3,8 +3,8 @@
 //! docs/theory/impacts.md and docs/numerics.md, Compliance of
 //! the pairs.
 //!
-//! The two products of the Delassus operator, eq. (5.1): the gaps and slips of constraints under forces at the unknowns
-//! of one compliance block, and under contact forces. See docs/theory/complementarity.md, Problem of a pass.
+//! The two products of the Delassus operator, eq. (5.1): gaps and slips of constraints under forces at the unknowns of
+//! a compliance block, and gaps and slips under contact forces. See docs/theory/complementarity.md, Problem of a pass.
 
 use std::array::from_fn;
 use std::collections::BTreeMap;
@@ -29,7 +29,7 @@ pub struct Compliance {
     rotation: Rotation,
     /// Connected group of every unknown in the matrix.
     groups: Vec<usize>,
-    /// Group of every unknown in the matrix of the elements alone: its body.
+    /// Body of every unknown: its connected group in the matrix of the elements alone.
     bodies: Vec<usize>,
     /// The inverses computed so far, for all constraints or for those of some bodies.
     inverses: BTreeMap<ConstraintGroup, Vec<InverseBlock>>,
@@ -58,13 +58,13 @@ struct InverseBlock {
 }
 
 impl InverseBlock {
-    /// The block of a group and its place, among blocks with increasing groups.
+    /// The block of a group and the place of this block among `blocks`, whose groups increase.
     fn of(blocks: &[InverseBlock], group: usize) -> Option<(usize, &InverseBlock)> {
         let at = blocks.binary_search_by_key(&group, |block| block.group);
         at.ok().map(|at| (at, &blocks[at]))
     }
 
-    /// Row of an unknown; `next` is the row that is looked at first.
+    /// Row of an unknown; the search begins with the row `next`.
     fn place(&self, unknown: usize, next: usize) -> Option<usize> {
         match self.unknowns.get(next) {
             Some(&of_next) if of_next == unknown => Some(next),
@@ -98,7 +98,7 @@ impl Compliance {
     /// computes the inverse anew, with the same bits.
     ///
     /// # Errors
-    /// Returns an error if the archive is of another model.
+    /// The archive belongs to another model.
     pub fn transfer(
         &mut self,
         archive: &mut Archive,
@@ -235,7 +235,7 @@ impl Compliance {
         &self.map
     }
 
-    /// Mutable T: its rows of bodies that turn depend on the iterate.
+    /// The mutable matrix T, whose rows for bodies that turn depend on the iterate.
     pub fn map_mut(&mut self) -> &mut Transformation {
         &mut self.map
     }
@@ -282,7 +282,8 @@ impl Compliance {
         }
     }
 
-    /// Entries of the normal and tangential row at the dofs of a node, times R (docs/numerics.md, Turned factors).
+    /// Entries of the normal and of the tangential row at the dofs of a node, times the rotation R (docs/numerics.md,
+    /// Turned factors).
     fn turned_back(&self, dofs: &[usize], rows: &Rows, node: usize) -> [[f64; 2]; 2] {
         let Rows { normal, tangential } = rows;
         let mut normal = [normal[2 * node], normal[2 * node + 1]];
@@ -395,7 +396,7 @@ pub(super) struct Responses {
     rows: Vec<f64>,
     /// Number of entries of a row.
     width: usize,
-    /// Columns of gap and slip of some constraints, over the unknowns.
+    /// Columns (over the unknowns) of the gaps and slips of some constraints.
     columns: [[Vec<f64>; 2]; TOGETHER],
 }
 
@@ -492,8 +493,8 @@ struct Terms<'a, F: Fn(&UnknownEntry) -> [f64; 2]> {
 }
 
 impl<F: Fn(&UnknownEntry) -> [f64; 2]> Terms<'_, F> {
-    /// The two sums of the vectors of some entries times their factors; they are added to the values there, or replace
-    /// them.
+    /// The two sums of the vectors of some entries times their factors; the sums are added to the values there, or
+    /// replace these values.
     #[inline(always)]
     fn combine<S: Simd>(
         &self,

@@ -90,7 +90,8 @@ pub struct Constraint {
     pub other_derivative_rows: Option<Rows>,
     /// Gap g of the iterate (length), positive when open; in a fit the allowed overlap is added, eq. (3.15).
     pub gap: f64,
-    /// Gap at the start in the sense of the force rows, g - Bn d (length); in a fit the overlap allowed there is added.
+    /// Gap at the start that follows from the force rows, g - Bn d (length); in a fit the overlap allowed at the start
+    /// is added.
     pub start_gap: f64,
     /// Slip Dt since the start of the increment (length).
     pub slip: f64,
@@ -159,8 +160,7 @@ impl Constraint {
         }
     }
 
-    /// The same constraint with another gap and slip, and with the length `scale` to which they are
-    /// relative.
+    /// The same constraint with another gap and slip, and with the length `scale` to which gap and slip are relative.
     pub fn with_gap_and_slip(&self, [gap, slip]: [f64; 2], scale: f64) -> Self {
         Constraint {
             gap,
@@ -218,7 +218,7 @@ impl Constraint {
     /// g0 + t Bn V + t²/2 Bn A = 0
     /// ```
     ///
-    /// Returns `None` if the gap does not close.
+    /// `None` if the gap does not close.
     pub fn closing_time(&self, [v, a]: [&[f64]; 2], end: f64) -> Option<f64> {
         let (gap, rate) = (self.start_gap.max(0.0), self.normal_motion(v));
         let discriminant = rate * rate - 2.0 * gap * self.normal_motion(a);
@@ -294,13 +294,13 @@ impl Constraint {
 /// f_k = Bn_k.N/(N.N),  N = sum_k Bn_k,  sum_k f_k = 1    eq. (9.15)
 /// ```
 ///
-/// With surface to surface the parts are the weights of the mean; a node without normal force, such as a node that only
-/// turns a disc, has no part.
+/// With surface to surface the parts are the weights of the mean gap; a node without normal force, such as a node that
+/// only turns a disc, has no part.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct SurfaceParts {
-    /// N, the force on the surface under a normal force of 1.
+    /// The force N on the surface under a contact normal force Pn of 1.
     pub normal: [f64; 2],
-    /// Nodes with their parts f.
+    /// Nodes of the surface with their parts f of the normal force.
     pub parts: SmallVec<[(usize, f64); 4]>,
 }
 

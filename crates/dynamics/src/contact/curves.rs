@@ -7,7 +7,7 @@ use super::bulge::Bulge;
 use super::tolerances::{CORNER_COSINE, LEAST_TURN, LONGEST_BENT, UNLIKE_TURNS};
 use crate::vectors::{cross, difference, dot, length};
 
-/// Shapes of faces that are known beyond the places of their nodes.
+/// What is known of the shapes of faces in addition to the places of their nodes.
 #[derive(Debug, Clone, Default)]
 pub struct FaceShapes {
     /// For every mid-side node, the ends of its side.
@@ -103,7 +103,7 @@ struct Turns<'a> {
 /// How a chain turns from one segment to the next.
 #[derive(Clone, Copy, PartialEq)]
 enum Turn {
-    /// The chain ends, has a corner, or goes on with a side that has its own shape.
+    /// The chain ends, has a corner, or goes on with a side whose shape is given.
     End,
     /// The next segment has the same direction.
     Straight,

@@ -34,7 +34,7 @@ impl DelassusSpace {
 /// Q = G W B^T, eq. (5.1), with the compliance W, derivative rows G and force rows B.
 ///
 /// Every constraint must have been prepared in the scope of the compliance. Q is symmetric where G = B, unless bodies
-/// turn: then their rows of T differ between gaps and forces, eq. (11.3).
+/// turn: the rows of T for a turning body differ between gaps and forces, eq. (11.3).
 pub fn frictional_lcp(
     constraints: &[&Constraint],
     (compliance, scope): (&Compliance, &ConstraintGroup),
@@ -66,8 +66,8 @@ const PANEL: usize = 128;
 const PIECE: usize = 16;
 const THREADS: usize = 64;
 
-/// Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential ones. Q is the sum over the groups of
-/// unknowns, each of which couples the constraints that act on it.
+/// Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential ones. Q is a sum over the groups of
+/// unknowns; a group couples the constraints that act on it.
 fn delassus(
     constraints: &[&Constraint],
     compliance: &Compliance,

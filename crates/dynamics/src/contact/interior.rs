@@ -10,7 +10,7 @@ use super::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF};
 use crate::model::{Element, ElementsAtNodes, Mesh};
 use crate::vectors::{difference, dot};
 
-/// The convex parts of the elements of a mesh, here called elements, which are found by the segments of their outlines.
+/// The convex parts of the elements of a mesh, here called elements; the segments of their outlines find them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interior {
     /// Nodes around every element, one element after the other; each segment leads from a node to the next, with the
@@ -99,7 +99,7 @@ impl Interior {
 
     /// Whether a point of a slave face between nodes has penetrated the body through this segment; `xi` and `gap` are
     /// its place and gap at the segment. Place and gap may be relative to the straight line that stands for a curved
-    /// side; the sides of the element are as far from this line as its mid-side nodes.
+    /// side; the mid-side node tells how far the side of the element is from this line.
     pub fn takes_in_point(
         &self,
         segment: [usize; 2],
@@ -114,8 +114,8 @@ impl Interior {
             .is_none_or(|line| face.iter().all(|&node| self.is_foreign(&line, node)))
     }
 
-    /// Whether a node behind the line of a segment belongs to the body there: it is a node of the
-    /// far side.
+    /// Whether a node behind the line of a segment belongs to the body behind the segment, so it is a node of the far
+    /// side.
     pub fn joins(&self, segment: [usize; 2], node: usize, at: impl Fn(usize) -> [f64; 2]) -> bool {
         let line = self.line(segment, node, 1.0, at);
         line.is_some_and(|line| line.stays && self.has_node(&line, node))

@@ -27,10 +27,10 @@ impl CornerContact {
     /// Bn = ((1 - w) Bn_i + w Bn_j)/m      Bt = ((1 - w) Bt_i + w Bt_j)/m
     /// ```
     ///
-    /// The blended normal has the length 1. Both g_i and g_j contain the overlap a that a fit allows, eq. (3.15). The
-    /// weights are constant in a pass, so rows and gap stay exact differences. With other weights than in the last
-    /// increment, a closed corner may begin with a small overlap; the overlap stays, since pushing it out would do
-    /// work.
+    /// The blended normal has the length 1. The gaps g_i and g_j to both segments contain the overlap a that a fit
+    /// allows, eq. (3.15). The weights are constant in a pass, so rows and gap stay exact differences. With other
+    /// weights than in the last increment, a closed corner may begin with a small overlap; this overlap stays, since
+    /// pushing the node out would do work.
     pub(super) fn constraint(self, pair: Pair, at: &Configurations) -> Constraint {
         // g = ((1 - w) g_i + w g_j)/m, Bn and Bt likewise, eq. (10.3)
         let corner = self.corner();

@@ -5,8 +5,8 @@
 //!
 //! With z = (r, e), r = x_s - x_a, e = x_b - x_a, the products of eq. (7.1) are pi_i = z.H_i z/2 with constant H_i, and
 //! grad pi_i = H_i z. The discrete gradients are Bn = alpha H2 zm + beta H3 zm and Bt = gamma H1 zm + delta H3 zm, eq.
-//! (7.2), eq. (7.3), with zm = (z0 + z1)/2. The derivatives of Bn and Bt with respect to the end are (rows: force;
-//! columns: d of the end)
+//! (7.2), eq. (7.3), with zm = (z0 + z1)/2. The derivatives of the discrete gradients Bn and Bt with respect to the end
+//! are (rows: force; columns: d of the end)
 //!
 //! ```text
 //! dBn = (alpha H2 + beta H3)/2 + H2 zm dalpha + H3 zm dbeta
@@ -166,8 +166,7 @@ fn displacements(nodes: [usize; 3], at: &Configurations) -> [f64; 6] {
     })
 }
 
-/// Derivative of a force at a constant height, between the positions of s, a and b at start and
-/// end.
+/// Derivative of a contact force at a constant height; the positions are those of s, a and b at start and end.
 pub(super) fn changes_between(
     [start, end]: [[[f64; 2]; 3]; 2],
     height: f64,

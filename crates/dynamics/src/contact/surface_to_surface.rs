@@ -118,12 +118,13 @@ fn gauss_points<'b>(
     }
 }
 
-/// Removes means of a slave node that cover only a sliver beyond a convex vertex: their c_j is below 1e-2 of the
-/// largest c_j of the node.
+/// Removes mean gaps of a slave node that cover only a sliver beyond a convex vertex: their weight c_j is below 1e-2 of
+/// the largest weight of the node.
 ///
-/// At a vertex of the master both ends of a sliver's segment are behind the line of the largest mean's segment. At a
-/// vertex of the slave the face of a sliver leads away from that segment. The gap of a sliver is the gap of the node
-/// alone; the largest mean already keeps the faces there apart.
+/// At a vertex of the master both ends of the segment of a sliver are behind the line of the segment with the largest
+/// mean gap weight. At a vertex of the slave the face of a sliver leads away from the segment with the largest weight.
+/// The gap of a sliver is the gap of the node alone; the mean gap with the largest weight already keeps the faces apart
+/// there.
 fn leave_out_slivers(
     of_sides: &mut [SmallVec<[Mean; 2]>],
     slave: &SlaveSegments,
@@ -188,7 +189,7 @@ impl PointsOfFaces {
         &self.points[self.starts[face]..self.starts[face + 1]]
     }
 
-    /// The means of one side of a slave node, whose `faces` are given, with increasing runs.
+    /// The mean gaps of one side of a slave node, whose `faces` are given, with increasing runs.
     fn means(
         &self,
         slave: &SlaveSegments,
@@ -314,8 +315,7 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// A point that was over segment i at the start and is over j in the iterate, with the number
-    /// j.
+    /// A point that was over segment i at the start and is over segment j in the iterate; the number is j.
     fn point(
         &self,
         face: usize,
@@ -376,7 +376,7 @@ impl<'a> Finder<'a> {
     /// Whether a face was in front of a segment at the start, or in front of another segment from which it may slide on
     /// to this one, or has penetrated the body through this segment. `p` and `q` are the projections of the ends of the
     /// face. The result is false for the far side of a thin body or of a body behind it, for a face that has entered
-    /// through another segment, and for one that lies on another segment.
+    /// through another segment, and for a face that lies on another segment.
     fn is_in_front(&self, (face, segment): (usize, usize), [p, q]: [Projection; 2]) -> bool {
         // the gaps at the ends of the part of the face over the segment decide: beyond this part a face of a bent thin
         // body may be in front of the line of a segment on the other side
@@ -455,8 +455,8 @@ impl<'a> Finder<'a> {
         dot(e, f) < -FACING_COSINE
     }
 
-    /// The parts of a face over some segments of a run, for the given edges. The parts end at the bisectors of the
-    /// vertices, and at the normals of the ends of the run.
+    /// The parts of a face over some segments of a run, for the given edges. The parts of the face end at the bisectors
+    /// of the master's vertices and at the normals of the ends of the run.
     ///
     /// ```text
     /// eta = -((x_1 - x_v) x m)/((x_2 - x_1) x m),   m = n_i + n_j    eq. (3.19)
@@ -837,7 +837,7 @@ mod tests {
         0.11, -0.05, 0.08, -0.02, 0.15, 0.03, -0.04, 0.06, 0.03, -0.02, 0.05, 0.04,
     ];
 
-    /// The pair that node 1 names.
+    /// The pair of a mean gap that node 1 names.
     fn pair() -> Pair {
         Pair {
             slave: 1,
@@ -850,8 +850,8 @@ mod tests {
         source_of([Bulge::FLAT; 2])
     }
 
-    /// The constraint of node 1 between straight faces and between curved ones; the slave faces
-    /// bulge by a constant rise.
+    /// The constraint of node 1 between straight faces and between curved ones; the curved slave faces bulge by a
+    /// constant rise.
     fn sources() -> [MeanContact; 2] {
         [Bulge::FLAT, Bulge::steep(1.2)].map(|bulge| source_of([bulge; 2]))
     }
@@ -980,8 +980,8 @@ mod tests {
         }
     }
 
-    /// Number of runs of the master over which the upper end of a slave face has means. The face has length 1; its part
-    /// `over` lies beyond the vertex at which the master turns by the angle `turn`.
+    /// Number of runs of the master over which the upper end of a slave face has mean gaps. The slave face has length
+    /// 1; its part `over` lies beyond the vertex at which the master turns by the angle `turn`.
     fn runs_over_a_vertex(over: f64, turn: f64) -> usize {
         let (sin, cos) = turn.to_radians().sin_cos();
         // bodies on the left: the master's face looks to the right

@@ -1,5 +1,5 @@
-//! Targets of slave nodes: what is selected for a node, and from what a constraint of each kind is made. See
-//! docs/theory/contact.md and docs/theory/geometry.md.
+//! Targets of slave nodes: the part of the master that is selected for a node, from which a constraint of each kind is
+//! made. See docs/theory/contact.md and docs/theory/geometry.md.
 //!
 //! Constraints of each kind are made in a file of their own; the module `kinds` chooses among them.
 
@@ -43,7 +43,7 @@ pub enum Target {
     Corner(CornerContact),
     /// Segments of the master under points of slave faces, whose mean gap must not become negative.
     Mean(MeanContact),
-    /// A segment, an arc or a vertex of the master whose slave node is the centre of a disc.
+    /// A segment, an arc or a vertex of the master, for a slave node that is the centre of a disc.
     Disc(DiscContact),
 }
 
@@ -142,8 +142,8 @@ pub struct MasterFeature {
 }
 
 impl Pair {
-    /// The same pair in one configuration: with the overlap allowed at the start of the increment (0) or at its end
-    /// (1).
+    /// The same pair in one configuration, the start of the increment (0) or its end (1), with the overlap that is
+    /// allowed there.
     fn in_one(self, configuration: usize) -> Self {
         Pair {
             allowed: [self.allowed[configuration]; 2],
@@ -170,7 +170,7 @@ impl PairTarget {
         }
     }
 
-    /// The slave node and its segment, which messages name; at a corner the segment before the corner.
+    /// The slave node and its segment, which messages name; at a corner this is the segment before the corner.
     pub(super) fn named(&self) -> NodeAtSegment {
         self.at_ends(self.target.ends())
     }
@@ -235,8 +235,8 @@ impl Target {
         }
     }
 
-    /// Ends of the segment of the target: at a corner the segment before the corner, for a mean the segment that counts
-    /// most, for a disc the nodes of the segment or arc.
+    /// Ends of the segment of the target: at a corner the segment before the corner, for a mean gap the segment that
+    /// counts most, for a disc the nodes of the segment or arc.
     fn ends(&self) -> [usize; 2] {
         match self {
             Target::Segment(contact) => contact.segment.ends,
@@ -246,7 +246,8 @@ impl Target {
         }
     }
 
-    /// Numbers of the segments out of which the slave node is kept; empty for a mean, which keeps out no single node.
+    /// Numbers of the segments out of which the slave node is kept; empty for a mean gap, which keeps out no single
+    /// node.
     pub(super) fn segments(&self) -> impl Iterator<Item = usize> {
         let numbers = match self {
             Target::Segment(contact) => [Some(contact.segment.number), None],
@@ -257,8 +258,8 @@ impl Target {
         numbers.into_iter().flatten()
     }
 
-    /// The target as it was selected for the node; `None` for means and discs, whose targets do not depend on the last
-    /// pass.
+    /// The target as it was selected for the node; `None` for mean gaps and discs, whose targets do not depend on the
+    /// last pass.
     pub(super) fn selected(&self) -> Option<ContactTarget> {
         match self {
             Target::Segment(SegmentContact { segment, from }) => Some(ContactTarget {
@@ -273,7 +274,7 @@ impl Target {
         }
     }
 
-    /// The mean, if the target is a mean.
+    /// The mean gap, if the target has one (surface to surface).
     pub(super) fn mean(&self) -> Option<&MeanContact> {
         match self {
             Target::Mean(mean) => Some(mean),
@@ -348,7 +349,7 @@ impl MeanContact {
 }
 
 impl SurfacePoint {
-    /// Nodes on whose positions the feature depends; some may come twice.
+    /// Nodes on whose positions the feature depends; a node may come twice.
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
         self.vertices.into_iter().flat_map(Vertex::nodes)
     }
@@ -395,7 +396,7 @@ impl ContactTarget {
         }
     }
 
-    /// Segments of the target: one, or both at a corner.
+    /// Segments of the target: one segment, or at a corner both segments.
     pub fn segments(&self) -> impl Iterator<Item = usize> + use<> {
         [Some(self.segment), self.corner.map(|v| v.next)]
             .into_iter()

@@ -5,13 +5,13 @@
 // Geometry of surfaces and bodies.
 
 /// Cosine of the turn beyond which a convex corner of the reference configuration is sharp (an
-/// angle below 120 degrees). Folded legs at a sharp corner are the corner itself; elsewhere they
-/// are a closed concave corner.
+/// angle below 120 degrees). If the legs of a corner fold onto each other, a corner that is sharp in the reference
+/// configuration stays convex; any other is a closed concave corner.
 pub(crate) const SHARP_TURN_COSINE: f64 = 0.5;
 /// Cosine of 30 degrees: beyond this turn in the reference configuration a surface has a corner.
 pub(crate) const CORNER_COSINE: f64 = 0.866;
-/// Sine of the turn in the reference configuration up to which a surface counts as straight there. The same number
-/// bounds four times the rise of a mid-side node, in lengths of the side.
+/// Sine of the turn in the reference configuration up to which a surface counts as straight there. This number also
+/// bounds four times the rise of a mid-side node (side lengths) up to which a side counts as straight.
 pub(crate) const LEAST_TURN: f64 = 1e-4;
 /// Ratio of the turns at both ends of a segment beyond which the segment, a chord of a fine flank that meets a coarse
 /// fillet, does not belong to the curve at the end with the larger turn.
@@ -63,8 +63,8 @@ pub(crate) const SEARCH_MARGIN_PER_MOTION: f64 = 2.0;
 
 // Selection of targets.
 
-/// Gap, in absolute value, below which a node counts as closed at the start of an increment: a
-/// closed gap is zero to the tolerance of the passes.
+/// Absolute value of a gap below which a node counts as closed at the start of an increment: a closed gap is zero to
+/// the tolerance of the passes.
 pub(crate) const CLOSED_GAP: f64 = 1e-9;
 /// Depth of a node at the start of the analysis up to which contact pushes it out; a deeper node
 /// belongs to another side of the body.
@@ -89,16 +89,16 @@ pub(crate) const END_OF_FEATURE: f64 = 1e-9;
 /// Distance beyond the end of a segment from which on a node counts as having slid on to the next
 /// segment.
 pub(crate) const SLID: f64 = 1e-7;
-/// Distance from a convex corner, along the faces, within which a node meets the corner itself.
+/// Distance along the faces from a convex corner, within which a node meets the corner itself.
 pub(crate) const CORNER_TIP: f64 = 1e-5;
 /// Overrun beyond the ends of a segment up to which a node keeps it, if the node has left it within
 /// an increment and found no other; the end of the increment decides whether the node has slid off.
 pub(crate) const KEPT_BEYOND_ENDS: f64 = 0.1;
 /// Overrun up to which a node keeps its segment once the passes have settled, even if another segment would constrain
-/// it. If passes still go to and fro between two targets, `KEPT_BEYOND_ENDS` applies instead.
+/// it. While passes go to and fro between two targets, `KEPT_BEYOND_ENDS` applies.
 pub(crate) const KEPT_WHEN_SETTLED: f64 = 1e-3;
-/// Overlap below which an open pair stays open once the passes have settled. Without the bound a
-/// force could alternate between two nodes that face each other.
+/// Overlap below which an open pair stays open once the passes have settled. Without this bound of the overlap a force
+/// could alternate between two nodes that face each other.
 pub(crate) const SETTLED_OVERLAP: f64 = 1e-10;
 /// Slip of a correction along a segment, in lengths of the segment, up to which rows and targets stay: the square of
 /// this number is round-off.
@@ -109,7 +109,7 @@ pub(crate) const SOLVED_GAP: f64 = 1e-12;
 /// a solution of a complementarity problem leaves about as much.
 pub(crate) const LIMIT_SLIP: f64 = 1e-10;
 /// Gap, slip or motion that counts as zero: the round-off of a quantity that is itself round-off of a length. Without
-/// the bound the remains of a motion that has died away would underflow.
+/// this bound the remains of a motion that has died away would underflow.
 pub(crate) const NOTHING: f64 = f64::EPSILON * f64::EPSILON;
 
 /// Round-off of a gap, relative to the coordinates of its nodes.
@@ -127,7 +127,8 @@ pub(crate) const CLEAR_PRODUCT: f64 = 1e-9;
 pub(crate) const CROSSING_BEYOND_ENDS: f64 = 1e-9;
 /// Depth behind a segment that counts as round-off of positions.
 pub(crate) const DEPTH_ROUND_OFF: f64 = 1e-9;
-/// Depth of a node behind a segment that means of gaps may leave; a deeper node has not been kept out at all.
+/// Depth of a node behind a segment that a closed mean gap may leave (surface to surface); a deeper node has not been
+/// kept out at all.
 pub(crate) const NODE_DEPTH: f64 = 0.5;
 /// Depth to which a free node may clip a corner on its straight path within an increment. If the
 /// increment is halved, the node need not be inside at this depth.
@@ -137,19 +138,20 @@ pub(crate) const SEGMENT_END: f64 = 1e-6;
 
 // Contact from surface to surface.
 
-/// Depth of a corner that is left to the means, in lengths of the shortest face at it and of the other surface. The
-/// depth is above round-off, so no corner closes where the means are closed. A body must turn by about three times this
-/// number before the resultant on its face reaches the corner. With the depth 1e-5, walls of bricks need up to a third
-/// more passes.
+/// Depth of a corner up to which mean gaps alone keep it out (surface to surface), in lengths of the shortest face at
+/// it and of the other surface. The depth is above round-off, so no corner closes where the mean gaps are closed. A
+/// body must turn by about three times this number before the resultant on its face reaches the corner. With the depth
+/// 1e-5, walls of bricks need up to a third more passes.
 pub(crate) const CORNER_DEPTH: f64 = 3e-5;
-/// Depth of a corner on its straight path in an increment that does not count as penetration, in the lengths of
+/// Depth of a corner on its straight path in an increment that does not count as penetration, in the unit of
 /// `CORNER_DEPTH`: a corner that slides over a segment whose face turns reaches it.
 pub(crate) const CORNER_PATH_DEPTH: f64 = 0.05;
 /// Cosine of 20 degrees: a convex vertex that turns by more meets the other surface as a corner.
 pub(crate) const VERTEX_COSINE: f64 = 0.94;
-/// Weight, relative to the largest mean of a slave node, below which another mean may be a sliver.
+/// Weight, relative to the largest weight of a mean gap of a slave node, below which another mean gap may be a sliver.
 pub(crate) const SLIVER: f64 = 1e-2;
-/// Least cosine of the angle between a slave face and the reversed master segment at which the two may be in contact.
+/// Least cosine of the angle between a slave face and the reversed master segment at which face and segment may be in
+/// contact.
 pub(crate) const FACING_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Depth relative to another segment, as a part of the depth of a face behind its segment, up to which the face counts
 /// as having entered through that other segment.
@@ -158,10 +160,10 @@ pub(crate) const NEARER_DEPTH: f64 = 0.5;
 pub(crate) const SIDE_BY_SIDE: f64 = 1.0;
 /// Smallest part of a slave face that is a cell.
 pub(crate) const LEAST_CELL: f64 = 1e-13;
-/// Part of the weight of a slave node that a mean must cover at least.
+/// Least part of the weight of a slave node that a mean gap must cover.
 pub(crate) const LEAST_COVER: f64 = 1e-6;
-/// Largest tangent of the tilt of the force at a point that has changed its segment. Beyond the largest tilt the point
-/// keeps the segment of the start, unless the surface turns by half as much.
+/// Largest tangent of the tilt of the force at a point that has changed its segment. Beyond this tilt a point keeps the
+/// segment of the start, unless the surface turns by half as much.
 pub(crate) const POINT_TILT: f64 = 0.3;
 
 // Preparation of a model.

@@ -65,12 +65,12 @@ const FREE: Contact = Contact {
     before: false,
     now: None,
 };
-/// The node was in contact before and is not at the end.
+/// The node was in contact before the increment, but is not at the end.
 const LEAVES: Contact = Contact {
     before: true,
     now: None,
 };
-/// Numbers of the segments from (5, 0.5) to (4, 0.5) on top and from (4, 0) to (5, 0) below.
+/// Numbers of two segments: on top from (5, 0.5) to (4, 0.5), below from (4, 0) to (5, 0).
 const TOP: [usize; 2] = [13, 14];
 const BOTTOM: [usize; 2] = [5, 6];
 

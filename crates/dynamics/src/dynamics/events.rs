@@ -36,7 +36,7 @@ pub(crate) struct Subincrements<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
     pub workspace: &'a mut Workspace<'m>,
     pub start: &'a State,
-    /// The part of the nominal increment that is left.
+    /// The part of a nominal increment that is still to be solved.
     pub rest: Interval,
     /// Length of the nominal increment.
     pub nominal: f64,
@@ -46,14 +46,15 @@ pub(crate) struct Subincrements<'a, 'm> {
 #[derive(Debug, Clone, Copy)]
 struct Intrusion {
     pair: NodeAtSegment,
-    /// Lift of the node over the chord of the segment; `None` for a mean.
+    /// Lift of the node over the chord of the segment; `None` for a mean gap.
     lift: Option<Lift>,
     /// Time of the event since the start of the subincrement, by the motion between its ends.
     time: f64,
 }
 
 impl Intrusion {
-    /// Gap of the pair at the end of a trial and the length to which it is relative; NaN for a mean over no segment.
+    /// Gap of the pair at the end of a trial and the length to which it is relative; NaN for a mean gap over no
+    /// segment.
     fn gap(&self, problem: &StepProblem, trial: &EventTrial) -> [f64; 2] {
         match self.lift {
             Some(lift) => {
@@ -68,7 +69,7 @@ impl Intrusion {
 /// Second-order motion of all nodes from the start of a subincrement.
 struct FreeMotion<'a> {
     path: &'a Path,
-    /// End of the subincrement if the motion is that of a converged subincrement; else 0.
+    /// End of the converged subincrement to which the motion belongs; 0 for another motion.
     end: f64,
     /// Time for which the motion is followed.
     duration: f64,
@@ -81,8 +82,9 @@ impl FreeMotion<'_> {
         u0.iter().zip(&travel).map(|(u, d)| u + d).collect()
     }
 
-    /// Whether the nodes move far enough relative to each other to meet. A node that meets a segment at xi was at most
-    /// (1 - xi) times its path relative to the end a, plus xi times its path relative to b, away from there.
+    /// Whether node and segment move far enough relative to each other to meet. A node that meets a segment at xi was
+    /// no farther away from there than (1 - xi) times its path relative to the end a plus xi times its path relative to
+    /// b.
     fn may_meet(&self, start: &Projection, [s, a, b]: [usize; 3]) -> bool {
         let Path {
             v, a: acceleration, ..

@@ -29,7 +29,8 @@ impl EventTrial {
         }
     }
 
-    /// The mean gap of a constraint and the length to which it is relative; NaN if the trial has no such mean.
+    /// The mean gap of a constraint and the length to which it is relative; NaN if the trial does not have this mean
+    /// gap.
     pub fn mean(&self, key: ConstraintKey) -> [f64; 2] {
         let place = self.means.binary_search_by_key(&key, |(key, _)| *key);
         place.map_or([f64::NAN; 2], |place| self.means[place].1)
@@ -68,7 +69,7 @@ impl ImpactSearch {
     }
 
     /// Length at which the gap of a pair is zero: by inverse quadratic interpolation of three trials, else by linear
-    /// interpolation of two. Returns `None` if the gap has no change of sign.
+    /// interpolation of two. `None` if the gap has no change of sign.
     pub fn root(&self, gap: impl Fn(&EventTrial) -> f64) -> Option<f64> {
         let (low, high) = (&self.before, self.after.as_ref()?);
         let (g, h) = (gap(low), gap(high));

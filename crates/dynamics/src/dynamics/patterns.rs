@@ -13,8 +13,7 @@ pub(crate) struct ReturnLoad {
     pub friction: Option<FrictionLoad>,
     /// Energy that is to be given back along the response.
     pub energy: f64,
-    /// Largest absolute value of the share: at this value the impulse is that of the force of the
-    /// increment.
+    /// Largest absolute value of the share; with it the impulse equals the impulse of the force in the increment.
     pub most: f64,
     /// Whether the share may be negative, so a force of the increment is taken back.
     pub pulls: bool,
@@ -24,7 +23,7 @@ pub(crate) struct ReturnLoad {
 pub(crate) struct FrictionLoad {
     /// Nodal forces over all dofs; for a pair they are (Pt/Pn) Gt^T.
     pub force: Vec<f64>,
-    /// Work c that friction has dissipated, for a share y of -1 (energy).
+    /// Work c of friction that the share y = -1 takes back (energy).
     pub work: f64,
 }
 
@@ -49,7 +48,7 @@ impl VelocityPattern {
 /// The velocity pattern of a load at the end of an increment of length `dt`, with the bodies in the configuration
 /// `bodies`.
 ///
-/// w = K*^-1 Gn^T, eq. (6.6), is up to a factor the change of the end velocity by the load.
+/// The pattern w = K*^-1 Gn^T, eq. (6.6), is, up to a factor, the change of the end velocity by the load.
 ///
 /// # Errors
 /// Returns an error if a solve with K* fails.
@@ -117,9 +116,9 @@ impl RigidBodies {
         bodies
     }
 
-    /// Velocity V_s of the supports over all dofs, if the dofs have the velocities `v`. V_s is one vector for each
-    /// body. The component of V_s in a direction is the mean velocity of the supports in this direction; without
-    /// supports it is the mean velocity of the mass.
+    /// Velocity V_s of the supports over all dofs, if the dofs have the velocities `v`. The velocity V_s is one vector
+    /// for each body. The component of V_s in a direction is the mean velocity of the supports in this direction;
+    /// without supports it is the mean velocity of the mass.
     pub fn support_velocity(&self, problem: &StepProblem, v: &[f64]) -> Vec<f64> {
         let body_of = problem.parts.of_nodes();
         // sums of the velocities and their number, and of the momenta and masses
@@ -150,7 +149,7 @@ impl RigidBodies {
         (0..v.len()).map(of_dof).collect()
     }
 
-    /// Sets a pattern to zero on bodies that contain a rigid body that turns: they are given no energy.
+    /// Sets a pattern to zero on bodies that contain a rigid body that turns: such bodies are given no energy.
     fn keep_turning(&self, problem: &StepProblem, w: &mut [f64]) {
         let body_of = problem.parts.of_nodes();
         let all = w.iter_mut().enumerate();
@@ -192,9 +191,9 @@ impl RigidBodies {
     /// sum p = (dt²/2) sum f,  sum r x p = (dt²/2) sum r x f,   eq. (6.7)
     /// ```
     ///
-    /// p = M w, f is the load, and r is the vector from the centre of mass. The response of K* alone does not have
-    /// exactly the momenta of the load: K* belongs to another configuration, contains contact stiffness, and its
-    /// factors may have been turned with the bodies.
+    /// Here p = M w is the momentum of the pattern, f is the load, and r is the vector from the centre of mass. The
+    /// response of K* alone does not have exactly the momenta of the load: K* belongs to another configuration,
+    /// contains contact stiffness, and its factors may have been turned with the bodies.
     fn correct(&self, problem: &StepProblem, dt: f64, force: &[f64], w: &mut [f64]) {
         let loads = self.sums(problem, force);
         let own = self.sums(problem, &problem.mass.times(w));

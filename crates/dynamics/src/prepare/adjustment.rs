@@ -73,9 +73,10 @@ pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adj
     adjusted
 }
 
-/// Chooses the nodes that move in a sweep: of a node and the segment that it faces only one moves. The deepest nodes
-/// come first; of nodes equally deep but for round-off, those that face the longest segments come first, since nodes of
-/// a fine mesh follow the shape of a coarse one. Nodes equal in both respects come in the order of the model.
+/// Chooses the nodes that move in a sweep: of a node and the segment that it faces, either the node or the segment
+/// moves. The deepest nodes come first; of nodes equally deep but for round-off, those that face the longest segments
+/// come first, since nodes of a fine mesh follow the shape of a coarse mesh. Nodes of equal depth that face equally
+/// long segments come in the order of the model.
 fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
     let depths = ranks(&gaps, |gap| gap.gap);
     let lengths = ranks(&gaps, |gap| -gap.length);
@@ -93,8 +94,8 @@ fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
     gaps
 }
 
-/// Rank of each slave node by a length, the least first; lengths that differ by no more than the round-off of
-/// coordinates have the same rank.
+/// Rank of each slave node by a length, with the least length first; lengths that differ by no more than the round-off
+/// of coordinates have the same rank.
 fn ranks(gaps: &[InitialGap], length: impl Fn(&InitialGap) -> f64) -> HashMap<usize, usize> {
     let mut ordered: Vec<&InitialGap> = gaps.iter().collect();
     ordered.sort_by(|a, b| length(a).total_cmp(&length(b)));

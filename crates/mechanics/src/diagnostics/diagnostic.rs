@@ -95,7 +95,7 @@ impl Diagnostic {
     }
 }
 
-/// A diagnostic that has been added, or `None` if it was added before.
+/// A diagnostic that has been added, or `None` if the same diagnostic was added before.
 pub struct Added<'d>(Option<&'d mut Diagnostic>);
 
 impl Added<'_> {
@@ -153,7 +153,7 @@ pub enum Strictness {
     Normal,
     /// Unknown keywords and parameters are left out with a warning.
     Lenient,
-    /// Warnings are errors.
+    /// Every warning is an error.
     Strict,
 }
 
@@ -163,7 +163,7 @@ pub struct Diagnostics {
     strictness: Strictness,
     items: Vec<Diagnostic>,
     counts: [usize; 3],
-    /// Places of the first diagnostics of each severity, of as many as are shown.
+    /// Places in the list of the diagnostics that are shown: the first ones of each severity.
     first: [BinaryHeap<Option<Span>>; 3],
     said: HashMap<Code, HashSet<String>>,
     /// Instance in which a line of a part was reported, by code and place.
@@ -212,14 +212,14 @@ impl Diagnostics {
         self.push(Diagnostic::note(code, span, message))
     }
 
-    /// Adds a warning at `span` unless one with the same code and message was added this way before.
+    /// Adds a warning at `span` unless a warning with the same code and message was added this way before.
     pub fn warning_once(&mut self, code: Code, span: Span, message: impl AsRef<str>) -> Added<'_> {
         self.once(code, message.as_ref(), |message| {
             Diagnostic::warning(code, span, message)
         })
     }
 
-    /// Adds a note at `span` unless one with the same code and message was added this way before.
+    /// Adds a note at `span` unless a note with the same code and message was added this way before.
     pub fn note_once(&mut self, code: Code, span: Span, message: impl AsRef<str>) -> Added<'_> {
         self.once(code, message.as_ref(), |message| {
             Diagnostic::note(code, span, message)
@@ -240,8 +240,7 @@ impl Diagnostics {
         self.push(make(message.to_owned()))
     }
 
-    /// Adds a diagnostic; one at a line of a part is added once, however many instances the part
-    /// has.
+    /// Adds a diagnostic; a diagnostic at a line of a part is added once, however many instances the part has.
     pub fn push(&mut self, mut diagnostic: Diagnostic) -> Added<'_> {
         diagnostic.severity = self.judge(&diagnostic);
         self.errors += usize::from(diagnostic.severity == Severity::Error);
@@ -271,15 +270,13 @@ impl Diagnostics {
         *first.or_insert(span.instance) != span.instance
     }
 
-    /// Number of errors found; if a part has several instances, it is larger than the number of
-    /// errors counted.
+    /// Number of errors found, including repetitions in further instances of a part, which [`Self::count`] leaves out.
     pub fn errors_found(&self) -> usize {
         self.errors
     }
 
-    /// Whether a diagnostic would be shown if it were the last one. Suggestions that need time are
-    /// made only for diagnostics that would be shown; later diagnostics never make hidden ones
-    /// visible.
+    /// Whether a diagnostic would be shown if it were added as the last one. Suggestions that need time are made only
+    /// for diagnostics that would be shown; later diagnostics never make hidden ones visible.
     pub fn may_show(&self, diagnostic: &Diagnostic) -> bool {
         let first = &self.first[self.judge(diagnostic) as usize];
         first.len() < SHOWN || first.peek().is_some_and(|last| diagnostic.span < *last)
@@ -322,8 +319,7 @@ impl Diagnostics {
         self.items.iter()
     }
 
-    /// All diagnostics in the order of their places (file, line, column); those without a place
-    /// come first.
+    /// All diagnostics in the order of their places (file, line, column); diagnostics without a place come first.
     pub fn sorted(&self) -> Vec<&Diagnostic> {
         let mut sorted: Vec<&Diagnostic> = self.items.iter().collect();
         sorted.sort_by_key(|item| (item.span, item.severity));

@@ -17,8 +17,8 @@ pub struct Source {
     name: String,
     text: Arc<String>,
     included_at: Option<Span>,
-    /// Number of lines that end before every piece of the text; they are counted for the first
-    /// message.
+    /// Number of lines that end before every piece of the text; the lines are counted when the first message needs
+    /// them.
     ends_before: OnceLock<Vec<usize>>,
 }
 
@@ -106,8 +106,7 @@ pub struct Sources {
     files: Vec<Source>,
     /// Names of the instances of parts, and the place where each is defined.
     instances: Vec<(String, Span)>,
-    /// Values that the reader of the deck sees in place of text in a line, for example of
-    /// parameters.
+    /// Values, for example of parameters, that the reader of the deck sees in place of text in a line.
     replaced: BTreeMap<(u32, u32), Vec<Replaced>>,
     /// Values of parameters that replace those of the deck.
     settings: Vec<String>,
@@ -115,11 +114,11 @@ pub struct Sources {
     earlier: Option<EarlierDeck>,
     /// Texts of an editor that are read in place of files, by the full paths of these files.
     unsaved: BTreeMap<PathBuf, String>,
-    /// Request to stop reading the deck because its result is not needed any more.
+    /// Request to stop reading the deck because the result is not needed any more.
     interrupt: Interrupt,
 }
 
-/// Request to stop reading a deck because its result is not needed any more.
+/// Request to stop reading a deck because the result is not needed any more.
 #[derive(Debug, Clone, Default)]
 pub struct Interrupt(Arc<AtomicBool>);
 
@@ -154,8 +153,8 @@ pub struct Replaced {
     pub typed: Span,
 }
 
-/// The canonical path of a file, which is the same for all paths to it; the given path if the file
-/// does not exist.
+/// The canonical path of a file, which is the same for all paths to the file; the given path if the file does not
+/// exist.
 pub fn whole_path(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }
@@ -167,7 +166,7 @@ impl Sources {
     }
 
     /// Sources without files; `settings` are values `name=expression` of parameters in place of those in the deck, and
-    /// `earlier` is the deck that it continues.
+    /// `earlier` is the deck that the main deck continues.
     pub fn with_settings(settings: &[String], earlier: Option<EarlierDeck>) -> Sources {
         Sources {
             settings: settings.to_vec(),
@@ -295,7 +294,7 @@ impl Sources {
         self.files.iter().map(Source::line_count).sum()
     }
 
-    /// The texts of all files; each except the first begins with a comment line with its name.
+    /// The texts of all files; each text except the first begins with a comment line that names its file.
     pub fn full_text(&self) -> String {
         let mut all = String::new();
         for source in &self.files {

@@ -67,7 +67,7 @@ pub(super) fn new_chunk(parts: ChunkParts) -> Box<dyn Chunk> {
 }
 
 impl ChunkParts<'_> {
-    /// A chunk with a formulation of the plane, or one of bodies of revolution.
+    /// A chunk with a formulation of the plane or of bodies of revolution.
     fn chunk<S, F, G, const N: usize, const P: usize>(self) -> Box<dyn Chunk>
     where
         S: IntegratedShape<N, P> + Send + Sync + 'static,
@@ -121,7 +121,7 @@ fn first<const N: usize>(nodes: &[usize]) -> [usize; N] {
     std::array::from_fn(|a| nodes[a])
 }
 
-/// Coordinates of the nodes of an element, column a for node a.
+/// Coordinates of the nodes of an element; column a belongs to node a.
 fn positions<const N: usize>(nodes: &[usize], x: &[[f64; 2]]) -> SMatrix<f64, 2, N> {
     SMatrix::from_fn(|i, a| x[nodes[a]][i])
 }

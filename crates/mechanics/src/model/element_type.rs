@@ -54,7 +54,7 @@ pub struct Topology {
     /// Number of nodes.
     pub nodes: usize,
     /// Local nodes of every side from corner to corner, with the element on the left; side 0 is S1/P1. Corners come
-    /// first among the nodes, and side i begins at corner i.
+    /// first among the nodes, and the side number i begins at the corner number i.
     pub sides: &'static [&'static [usize]],
     /// Cell type of VTK.
     pub vtk_cell: u8,

@@ -1,5 +1,5 @@
-//! Sparse symmetric matrices over the unknowns of u = T q + g with the pattern of the elements and, if needed, further
-//! blocks; their factorisations, and parts of their inverses.
+//! Sparse symmetric matrices over the unknowns q of u = T q + g, their factorisations, and parts of their inverses. A
+//! matrix has the pattern of the elements and, if needed, further blocks.
 
 mod assembled;
 mod checked;

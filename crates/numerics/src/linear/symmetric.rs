@@ -5,7 +5,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Pattern of a symmetric matrix: the places of its entries. Copies share its memory.
+/// Pattern of a symmetric matrix: the places of its entries. Copies of a pattern share its memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pattern {
     /// First entry of every column, and the number of entries at the end.

@@ -11,10 +11,11 @@ use crate::archive::{Archive, ArchiveError};
 
 /// The matrix T of u = T q + g: every dof is a sum of terms c q_k.
 ///
-/// A free dof has a row of the identity, a prescribed dof an empty row, and a dof that follows others by an equation
-/// has a row with their coefficients. A dof of a body that turns also follows the angle of the body, by two
-/// coefficients that change with the iterate. Forces act by the first coefficient, which represents the difference
-/// between start and iterate exactly. The second coefficient is the derivative at the iterate (docs/theory/bodies.md).
+/// In T the row of a free dof is a row of the identity matrix, and the row of a prescribed dof is empty. The row of a
+/// dof that follows other dofs by an equation holds the coefficients of their unknowns. A dof of a body that turns also
+/// follows the angle of the body, by two coefficients that change with the iterate. Forces act by the first coefficient
+/// of an angle, which represents the difference between start and iterate exactly. The second coefficient of an angle
+/// is the derivative of the dof at the iterate (docs/theory/bodies.md).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformation {
     unknowns: usize,
@@ -24,7 +25,7 @@ pub struct Transformation {
     terms: Arc<[(usize, f64)]>,
     /// Coefficients of the derivatives, if they differ from those of the terms.
     derivatives: Option<Vec<f64>>,
-    /// Ranges of the dofs of the unknowns, if all rows are empty or rows of the identity.
+    /// Ranges of the dofs of the unknowns, if every row is empty or a row of the identity matrix.
     selected: Option<Vec<Range<usize>>>,
 }
 
@@ -102,7 +103,7 @@ impl Transformation {
         self.derivatives.is_some()
     }
 
-    /// Terms of the derivatives in a range of the terms.
+    /// Terms with the coefficients of the derivatives, for a range of the terms.
     fn derivatives_in(&self, range: Range<usize>) -> impl Iterator<Item = (usize, f64)> + '_ {
         let of = self.derivatives.as_deref();
         range.map(move |i| (self.terms[i].0, of.map_or(self.terms[i].1, |of| of[i])))

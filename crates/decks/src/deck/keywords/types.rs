@@ -44,7 +44,7 @@ impl Levels {
         Levels(bits.fold(0, |all, bit| all | bit))
     }
 
-    /// The union of these levels and `other`.
+    /// The union of two sets of levels.
     pub fn and(self, other: Levels) -> Levels {
         Levels(self.0 | other.0)
     }
@@ -54,8 +54,8 @@ impl Levels {
         self.0 & Levels::of(&[level]).0 != 0
     }
 
-    /// Whether cards of these levels belong to the mesh or join its parts: such cards define something that steps refer
-    /// to.
+    /// Whether cards of these levels belong to the mesh or join its parts: such cards define objects to which steps
+    /// refer.
     pub fn are_of_mesh(self) -> bool {
         self.has(Level::Part) || self.has(Level::Assembly)
     }
@@ -78,8 +78,8 @@ pub enum Scope {
     At(Levels),
     /// The keyword stands in the block of the keyword with this name.
     Block(&'static str),
-    /// The keyword stands in the block of the first keyword, which is of the model, or right after the second, which is
-    /// of steps.
+    /// The keyword stands in the block of the first named keyword (at the model level), or right after the second named
+    /// keyword (in a step).
     BlockOrAfter(&'static str, &'static str),
     /// The keyword stands in the block of the keyword with this name, or by itself at the level of the model.
     BlockOrModel(&'static str),
@@ -87,14 +87,14 @@ pub enum Scope {
     Structure,
 }
 
-/// Data lines of a keyword.
+/// Data lines that a keyword may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Data {
     /// The keyword has no data lines.
     None,
-    /// Any number of rows is allowed; of the forms, the first one that fits a row holds.
+    /// Any number of rows is allowed; a row has the first of the forms that fits.
     Rows(&'static [DataLineForm]),
-    /// The keyword needs at least one row; of the forms, the first one that fits a row holds.
+    /// The keyword needs at least one row; a row has the first of the forms that fits.
     Required(&'static [DataLineForm]),
     /// Free text.
     Text,
@@ -141,7 +141,7 @@ pub enum Kind {
     Orientation,
     /// Circles on which faces of a surface lie.
     SurfaceSmoothing,
-    /// How nodes of general contact are moved at the start.
+    /// A rule by which nodes of general contact are moved at the start.
     ContactInitialization,
     /// A tie between surfaces.
     Tie,
@@ -195,7 +195,7 @@ impl Kind {
         Kind::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// The kind that a text names, alone or behind ` or `.
+    /// The kind of object that a text names, alone or behind ` or `.
     fn at_end_of(text: &str) -> Option<Kind> {
         let last = text.rsplit_once(" or ").map_or(text, |(_, last)| last);
         Kind::named(last)
@@ -221,8 +221,8 @@ pub struct Keyword {
     pub text: &'static str,
     /// Lines of a deck that use the keyword, or that replace it if it is not read; empty if there are none.
     pub example: &'static str,
-    /// Whether the keyword asks for output: unknown parts of such a card are left out, because they do not change the
-    /// results.
+    /// Whether the keyword asks for output: unknown parts of such a card are left out, because these parts do not
+    /// change the results.
     pub is_output: bool,
     /// Task of the keyword: the title of its family.
     pub task: &'static str,
@@ -268,11 +268,11 @@ impl Keyword {
 pub enum Status {
     /// The program reads and obeys the keyword, parameter or value.
     Read,
-    /// The program leaves it out silently, because it does not affect the results.
+    /// The program leaves the keyword, parameter or value out silently, because it does not affect the results.
     Ignored,
-    /// The program leaves it out or replaces it, with a warning.
+    /// The program leaves the keyword, parameter or value out, or replaces it, with a warning.
     Warned,
-    /// The program stops with an error, because leaving it out would change the results.
+    /// The program stops with an error, because leaving the keyword, parameter or value out would change the results.
     Refused,
 }
 
@@ -344,7 +344,7 @@ impl Parameter {
     }
 }
 
-/// What the value of a field or of a parameter holds.
+/// Content of the value of a field or of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// A word, a label, or a number that is the same in all units.
@@ -437,8 +437,8 @@ impl Field {
 /// The fields of one form of data line, and the conditions under which a line has this form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DataLineForm {
-    /// Parameter and value of the keyword line that these lines belong to; an empty value stands
-    /// for a parameter without value.
+    /// Parameter and value of the keyword line for which lines have this form; an empty value stands for a parameter
+    /// without value.
     pub parameter: Option<(&'static str, &'static str)>,
     /// Number of a field, from 0, and the words that may stand in this field in lines of this form.
     pub word: Option<(usize, &'static [&'static str])>,

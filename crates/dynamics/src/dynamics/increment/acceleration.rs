@@ -32,7 +32,7 @@ pub(super) struct CorrectionProgress {
 pub(super) struct PassAcceleration(Acceleration<1>);
 
 impl PassAcceleration {
-    /// The acceleration of a first pass, which has no earlier ones.
+    /// The acceleration before the first pass, when no steps are remembered.
     pub fn new() -> Self {
         PassAcceleration(Acceleration::new(MEMORY, DEPENDENT))
     }

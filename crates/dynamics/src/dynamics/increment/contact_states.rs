@@ -14,8 +14,7 @@ pub(crate) struct ContactStates {
     pub forces: ContactForces,
     /// Impact impulses Phi and Psi at the start.
     pub impulses: Impulses,
-    /// Constraints of the iterate until they are handed over to `forces`, then those of the last
-    /// pass.
+    /// Constraints of the iterate until they are handed over to `forces`, then the constraints of the last pass.
     pub found: Vec<Constraint>,
     /// Constraints of the iterate that do not count (inactive pairs).
     pub left_out: Vec<Constraint>,
@@ -29,8 +28,8 @@ pub(crate) struct ContactStates {
 const MOVES: f64 = 1e-9;
 
 impl ContactStates {
-    /// The pairs before the first pass: the closed ones, and those that touch at the start. The passes begin with the
-    /// constraints of the slave nodes in `choice`.
+    /// The pairs before the first pass: the closed pairs, and the pairs that touch at the start. The passes begin with
+    /// the constraints of the slave nodes in `choice`.
     pub fn new(closed: &ClosedPairs, set: ConstraintSet, choice: SlaveChoice) -> Self {
         ContactStates {
             choice,
@@ -40,9 +39,10 @@ impl ContactStates {
         }
     }
 
-    /// Writes the constraints of the iterate U, both those that count and the inactive ones; `begins` is true in the
-    /// first pass. Pairs that have not slipped get the coefficient of friction at rest, others the one of their slip
-    /// rate. With `kept`, slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
+    /// Writes the constraints of the iterate U, both the constraints that count and the inactive ones; `begins` is true
+    /// in the first pass. Pairs that have not slipped get the coefficient of friction at rest, other pairs the
+    /// coefficient at their slip rate. With `kept`, slave nodes keep their targets up to this overrun beyond the ends
+    /// (segment lengths).
     pub fn find(
         &mut self,
         problem: &StepProblem,
@@ -75,7 +75,7 @@ impl ContactStates {
     }
 
     /// Adds the constraints of far slave nodes at the iterate U before an increment ends. Returns whether the
-    /// constraints of far nodes stay open, after the correction dU if there is one. If a constraint of a far node
+    /// constraints of far nodes stay open (after the correction dU, if it is given). If a constraint of a far node
     /// closes, the passes go on with the constraints of all nodes. A far node behind the line of a segment and beyond
     /// its ends has gone past the corner, so it has no constraint there.
     pub fn complete(
@@ -141,8 +141,8 @@ impl ContactStates {
         self.impulses.rest(problem, &self.forces)
     }
 
-    /// Adds the inactive constraints to the active ones at the end of an increment. Constraints of a free node past or
-    /// at a corner that lies behind the line of the segment from which it came are left out.
+    /// Adds the inactive constraints to the active ones at the end of an increment. A free node at or past a corner
+    /// gets no constraint there if the corner lies behind the line of the segment from which the node came.
     pub fn take_left_out(&mut self, problem: &StepProblem, u: &[f64]) {
         let at = problem.positions(u);
         let left_out = self.left_out.drain(..);

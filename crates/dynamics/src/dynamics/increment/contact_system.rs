@@ -25,7 +25,7 @@ use crate::linear::LinearError;
 pub(crate) struct Guess {
     /// State of every constraint.
     pub states: Vec<ContactState>,
-    /// Forces of every constraint, if known: of several solutions, the answer near them is sought.
+    /// Forces of every constraint, if known: of several solutions, the solution near these forces is sought.
     pub forces: Option<Vec<[f64; 2]>>,
     /// Weight of the nearness of the answer to the known forces; without a weight the nearness
     /// counts only if there is no answer otherwise.
@@ -33,7 +33,8 @@ pub(crate) struct Guess {
 }
 
 impl Guess {
-    /// Sets states and forces to those of the pairs closed `before`; the answer is sought near them with a weight.
+    /// Sets states and forces to those of the pairs closed `before`; with a weight the answer is sought near these
+    /// forces.
     pub fn take_over(
         &mut self,
         constraints: &[&Constraint],
@@ -49,8 +50,7 @@ impl Guess {
         self.weight = weight;
     }
 
-    /// Whether the guess has forces but no weight, so an answer near the forces would be another
-    /// one.
+    /// Whether the guess has forces but no weight, so that a guess with a weight may have another answer.
     fn has_forces_only(&self) -> bool {
         self.forces.is_some() && self.weight.is_none()
     }
@@ -69,10 +69,10 @@ impl System<'_> {
     /// carry a force are written to `closed`; returns the number of pivots. With a `response`, problems of many
     /// constraints are solved by blocks where that is faster.
     ///
-    /// If the problem with derivative rows has no solution, the problem with the force rows in their place is solved. Q
-    /// is then symmetric and the theorem of docs/theory/complementarity.md holds, so a ray means that pairs contradict
-    /// each other. If pairs are so nearly the same that round-off spoils both problems, the answer near the last forces
-    /// is used.
+    /// If the problem with derivative rows has no solution, the problem with force rows in place of the derivative rows
+    /// is solved. Q is then symmetric and the theorem of docs/theory/complementarity.md holds, so a ray means that
+    /// pairs contradict each other. If pairs are so nearly the same that round-off spoils both problems, the answer
+    /// near the last forces is used.
     pub(super) fn solve_contact(
         &mut self,
         constraints: &[&Constraint],
@@ -166,8 +166,8 @@ pub(super) fn closed_of<'a>(
 }
 
 /// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, where P^0 are the forces of the last
-/// pass. If several pairs can carry the same force, the rule selects the solution near that of the last pass; its term
-/// vanishes as the passes converge.
+/// pass. If several pairs can carry the same force, the rule selects the solution near the forces of the last pass; the
+/// term of the rule vanishes as the passes converge.
 fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]], weight: f64) {
     let n = forces.len();
     for (k, [pn, pt]) in forces.iter().enumerate() {
@@ -185,9 +185,9 @@ const LEAST: usize = 100;
 /// Number of constraints up to which their list needs no allocation.
 pub(super) const FEW: usize = 128;
 
-/// Least mean number of constraints in a block. The solves of an iteration cost the same for any blocks, so with
-/// smaller blocks the iteration is no faster than solving with all of Q. Two flush faces have up to four constraints of
-/// corners, which seldom carry a force.
+/// Least mean number of constraints in a block. The solves of an iteration cost the same for blocks of any size, so
+/// with smaller blocks the iteration is no faster than one solution with all of Q. Two flush faces have up to four
+/// constraints of corners, which seldom carry a force.
 const LEAST_BLOCK: usize = 8;
 
 /// Largest part of the entries of Q within the blocks; with a larger part blocks gain nothing.
@@ -232,8 +232,8 @@ impl GapsAndSlips<'_, '_> {
 type ProblemBlocks = (Vec<LcpBlock>, Vec<[f64; 2]>);
 
 impl System<'_> {
-    /// Positions of constraints, grouped by the bodies between which they act or by parts of surfaces; `None` if their
-    /// problem is not to be solved by blocks.
+    /// Positions of constraints, grouped by the bodies between which they act or by parts of surfaces; `None` if the
+    /// problem of the constraints is not to be solved by blocks.
     pub(super) fn by_bodies(
         &self,
         constraints: &[&Constraint],
@@ -367,16 +367,16 @@ fn are_in_both_orders(constraints: &[&Constraint]) -> bool {
     })
 }
 
-/// Whether the first contact of a part is coupled strongly to all others of the part; then the part is coupled strongly
-/// to its neighbours too.
+/// Whether the first contact of a part is coupled strongly to all others of the part; then the part is also coupled
+/// strongly to its neighbours.
 fn is_coupled(part: &FrictionalLcp) -> bool {
     let q = |i: usize, j: usize| part.q[(i, j)];
     let coupling = |j: usize| q(0, j).abs() / (q(0, 0) * q(j, j)).sqrt();
     (1..part.len()).map(coupling).fold(1.0, f64::min) > COUPLING
 }
 
-/// u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. The sum is available at the
-/// nodes of the constraints at any time, and everywhere at the end.
+/// u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. This response is available at
+/// the nodes of the constraints at any time, and everywhere at the end.
 pub(super) struct Response<'a> {
     /// Displacements u, over all dofs.
     start: &'a [f64],
@@ -447,8 +447,8 @@ impl<'a> Response<'a> {
         found.extend(constraints.map(after));
     }
 
-    /// Tells the free motions the positions of their pins without contact forces; gaps and slips must have been asked
-    /// for before.
+    /// Tells the free motions the positions of their pins without contact forces; [`Self::gaps_and_slips`] must have
+    /// been called before.
     pub fn show_pins(&self, system: &mut System) {
         let at_nodes = &self.vectors.at_nodes;
         if let Some(free) = system.free_mut() {

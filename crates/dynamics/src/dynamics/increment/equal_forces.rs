@@ -7,8 +7,7 @@ pub(super) const FIRST_WEIGHT: f64 = 1e-5;
 const DECREASE: f64 = 0.1;
 /// Least weight: with a smaller one, the round-off of the gaps moves the forces.
 const LEAST_WEIGHT: f64 = 1e-7;
-/// Ratio of successive corrections above which they crawl: if the weight has its least value, it
-/// then falls further.
+/// Ratio of successive corrections above which corrections crawl: a weight at its least value then falls further.
 const CRAWLING: f64 = 0.7;
 /// Weight of the equal-force rule for corrections that crawl.
 const WEIGHT_OF_CRAWLING: f64 = 1e-9;

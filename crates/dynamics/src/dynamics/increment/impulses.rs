@@ -22,8 +22,7 @@ use crate::linear::larger;
 const SET_CHANGES: usize = 5;
 
 /// The impact impulses of an increment. Impulses act on the pairs that carry a force at the end of
-/// the increment, and on the pairs that touch at its start because an impact ended the previous
-/// subincrement.
+/// the increment, and on the pairs that touch at the start because an impact ended the previous subincrement.
 #[derive(Default)]
 pub(crate) struct Impulses {
     /// Keys of the pairs closed at the end of the last pass, increasing.
@@ -38,11 +37,10 @@ pub(crate) struct Impulses {
     of_iterate: Vec<Constraint>,
     /// Keys of the pairs whose impulse may use the impulse of their force (standing impulse), eq. (11.7), increasing.
     lent: Vec<ConstraintKey>,
-    /// The velocity that impulses start from in place of V0, eq. (11.5) and eq. (11.11); `None` if
-    /// it is V0.
+    /// The velocity that impulses start from in place of V0, eq. (11.5) and eq. (11.11); `None` if impulses start from
+    /// V0.
     seen: Option<Vec<f64>>,
-    /// J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty if
-    /// nothing strikes.
+    /// J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty without impulses.
     resultant: Vec<f64>,
     /// Keys and normal forces of the pairs that did not slip in the last pass, increasing.
     sticking: Vec<(ConstraintKey, f64)>,
@@ -56,12 +54,12 @@ fn sticking(closed: &ClosedPairs) -> Vec<(ConstraintKey, f64)> {
 }
 
 /// Speed of approach, as a part of the largest speed at a pair, up to which the pair neither lands nor opens. A speed
-/// whose motion in the increment is less than a solved gap counts as zero too.
+/// also counts as zero if its motion in the increment is less than the gap of a solved pair.
 const RESTING: f64 = 1e-9;
 
 impl Impulses {
-    /// Impulses before the first pass: `before` are the pairs closed in the last increment, `touching` those that touch
-    /// at the start.
+    /// Impulses before the first pass: `before` are the pairs closed in the last increment, `touching` the pairs that
+    /// touch at the start.
     pub fn new(before: &ClosedPairs, touching: Vec<ConstraintKey>) -> Self {
         Impulses {
             closed: before.keys().collect(),
@@ -76,8 +74,7 @@ impl Impulses {
         self.forces.acting()
     }
 
-    /// J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty if
-    /// nothing strikes.
+    /// J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty without impulses.
     pub fn resultant(&self) -> &[f64] {
         &self.resultant
     }
@@ -92,8 +89,8 @@ impl Impulses {
         self.touching.binary_search(&key).is_ok()
     }
 
-    /// Solves for the impulses Phi and Psi of the constraints of the iterate, eq. (6.2). The available impulses are
-    /// kept if they are near enough to the new ones after the pass `before`.
+    /// Solves for the impulses Phi and Psi of the constraints of the iterate, eq. (6.2). After the pass `before`, the
+    /// available impulses are kept if they are near enough to the new impulses.
     fn solve(
         &mut self,
         problem: &StepProblem,
@@ -211,7 +208,7 @@ impl Impulses {
     }
 
     /// Relative difference, in parts of the largest forces, between the impulses with the rows of the iterate and the
-    /// available ones; infinite if these belong to other constraints.
+    /// available ones; infinite if the available impulses belong to other constraints.
     fn part_of_change(&self, steady: &Steady) -> f64 {
         let (struck, before) = (&self.of_iterate, &self.forces.constraints);
         let same_set = (before.iter().map(|c| c.key)).eq(struck.iter().map(|c| c.key));
@@ -229,7 +226,7 @@ impl Impulses {
 
     /// The velocity that the equilibrium of an iterate with the given constraints needs at the start. The velocity is
     /// V0+ if U_theta depends on V0+, or if the mass of bodies that turn acts by other arms in the iterate than at the
-    /// start; else it is V0, with the impulses apart, so nothing is solved with M.
+    /// start; otherwise the velocity is V0 and the impulses enter separately, so nothing is solved with M.
     pub fn start_velocity<'a>(
         &'a mut self,
         problem: &StepProblem,
@@ -261,7 +258,7 @@ impl Impulses {
         Ok(StartVelocity { v0p, impulse: &[] })
     }
 
-    /// State of a pair in the last impulses; a pair that was not among them sticks if it approaches.
+    /// State of a pair in the last impulses; a pair without an impulse there sticks if it approaches.
     fn state(&self, constraint: &Constraint, v0: &[f64], dt: f64) -> ContactState {
         let key = constraint.key;
         match (self.forces.constraints).binary_search_by_key(&key, |struck| struck.key) {
@@ -277,7 +274,7 @@ impl Impulses {
         self.at_rest
     }
 
-    /// Enters the pairs in contact after a pass. Returns whether the pairs are the same as before, those with a
+    /// Enters the pairs in contact after a pass. Returns whether the pairs are the same as before, the pairs with a
     /// standing impulse still do not slip, and the impulses belong to these pairs. After some changes the set of pairs
     /// is kept: impulses on any set remove energy and never add any.
     pub fn rest(&mut self, problem: &StepProblem, contact: &ContactForces) -> bool {
@@ -327,7 +324,7 @@ fn has_mass(problem: &StepProblem, constraint: &Constraint) -> bool {
 /// |Psi| <= mu Phi, Psi opposes Gt V0+
 /// ```
 ///
-/// The kinetic energy therefore never grows where G = B. The search begins with the given states.
+/// Where G = B, impulses never increase the kinetic energy. The search begins with the given states.
 ///
 /// Problems of many constraints are solved by blocks that use the given gaps and slips, so the round-off of V0 does not
 /// enter the effect of the impulses.
@@ -377,8 +374,8 @@ fn impulses(
 }
 
 /// Impulses of constraints of which some have a standing impulse P0, with Phi + P0 >= 0 in place of Phi >= 0, eq.
-/// (11.7). V0 - M^-1 Bn^T P0 is the velocity without the standing impulses. If an impulse would cancel all of its P0,
-/// this P0 is set to zero and the impulses are computed anew.
+/// (11.7). V0 - M^-1 Bn^T P0 is the velocity without the standing impulses. If an impulse would cancel all of a
+/// standing impulse P0, this P0 is set to zero and the impulses are computed anew.
 fn standing_impulses(
     constraints: &[Constraint],
     mut standing: Vec<f64>,
@@ -495,8 +492,8 @@ impl Steady<'_> {
 }
 
 /// Change of the velocity after the impulses of a constraint if its rows change from `before` to `now`. The change is
-/// the sum of three changes: of the approach and of the slip rate, as far as the impulses of the state stop them, and
-/// of the direction of the velocity jump that stops them.
+/// the sum of three changes: of the approach and of the slip rate, as far as the impulses of the state stop these, and
+/// of the direction of the velocity jump.
 fn change(
     before: &Constraint,
     now: &Constraint,

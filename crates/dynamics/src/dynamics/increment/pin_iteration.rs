@@ -11,8 +11,8 @@ use crate::dynamics::step::{
 use crate::lcp::Stability;
 use crate::linear::{larger, largest};
 
-/// Force, relative to all others, up to which it is ignored if it acts along a motion that nothing resists and that
-/// cannot be held.
+/// Largest force, relative to the largest of the other forces, that is ignored if it acts along a motion that nothing
+/// resists and that cannot be held.
 const SMALL_FORCE: f64 = 1e-9;
 /// Force at the pins of a body that counts as zero, relative to the largest force at all pins.
 const NO_PART: f64 = 1e-12;
@@ -112,8 +112,7 @@ impl PinIteration<'_, '_> {
         }
     }
 
-    /// Contact forces and correction of a pass; returns the forces by which hinges close their
-    /// gaps.
+    /// Solves for contact forces and correction of a pass; returns the forces by which hinges close their gaps.
     ///
     /// ```text
     /// dU = d_p + W (r + N dU + B^T P) + Z p      eq. (12.4)
@@ -173,8 +172,9 @@ impl PinIteration<'_, '_> {
             .fold(0.0, larger)
     }
 
-    /// Motions that a force drives although contact does not resist them, or resists them only as little as facets may.
-    /// A motion that facets resist counts only if its force is one that facets may cause.
+    /// Motions along which a force drives a body although contact resists the motion not at all, or only as little as
+    /// facets may. A motion that facets resist counts only if facets may cause a force as large as the force along the
+    /// motion.
     fn driven(&mut self, contact: &ContactForces, v: &Vectors) -> Vec<Loose> {
         let others = self.others(contact, v);
         let problem = self.problem;
@@ -246,8 +246,8 @@ impl PinIteration<'_, '_> {
         Ok(held.hold(&self.workspace.pins, &at, &acting, (force, least)))
     }
 
-    /// Checks that the forces that hold motions in a converged increment are within those that facets may cause under
-    /// the normal forces of the increment.
+    /// Checks that the forces that hold motions in a converged increment are no larger than facets may cause under the
+    /// normal forces of the increment.
     pub fn check_held(
         &self,
         contact: &ContactForces,

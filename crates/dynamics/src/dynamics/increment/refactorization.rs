@@ -46,7 +46,7 @@ pub(super) struct Refactorization {
 }
 
 impl Refactorization {
-    /// Factors of an attempt; it begins with new ones if these are due.
+    /// Factors of an attempt, which begins with new factors if these are due.
     pub fn new(rule: FactorRule, are_due: bool, tolerance: f64) -> Self {
         Refactorization {
             rule,
@@ -90,7 +90,7 @@ impl Refactorization {
         (self.own, self.age) = (true, 0);
     }
 
-    /// Enters the relative correction of a pass. A growing correction is not divergence if it `may_grow`.
+    /// Enters the relative correction of a pass. A growing correction is not divergence if `may_grow` is true.
     ///
     /// At the rate theta, n(theta) = ln(correction/tolerance)/-ln(theta) passes are left. The factors are worn if
     /// n(theta) is more than the passes with fresh factors plus the cost of the factorisation.

@@ -6,7 +6,7 @@ use crate::contact::{Constraint, ConstraintKey};
 /// Energy given back after an increment, and the energy that nodes without mass lost before.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Returned {
-    /// Return of each pair.
+    /// Energy and impulses given back to each pair.
     pub pairs: Vec<PairReturn>,
     /// Work of the supports that keep their velocity during the return (energy).
     pub support_work: f64,

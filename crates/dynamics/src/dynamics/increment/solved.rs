@@ -24,7 +24,7 @@ pub(crate) struct Solved {
     pub end: State,
     /// Energy that the materials have dissipated.
     pub material_dissipation: f64,
-    /// Work of the temperature, and the larger of its two parts.
+    /// Work of the temperature, and the larger of the two parts of this work.
     pub thermal_work: [f64; 2],
     /// Displacement increment after the first pass, by the tangent at the start. If contact alone holds a body, the
     /// increment is the one after the first pass with closed pairs.
@@ -39,7 +39,7 @@ pub(crate) struct Solved {
     pub pairs_stiffen: bool,
     /// Rates that a static increment has measured with its factors.
     pub rates: StaticRates,
-    /// Whether the last factors of a static increment tell the stability of its end.
+    /// Whether the last factors of a static increment show if the equilibrium at its end is stable.
     pub tells_stability: bool,
     /// Whether a body has tipped over, which the next increment cannot extrapolate.
     pub has_tipped: bool,

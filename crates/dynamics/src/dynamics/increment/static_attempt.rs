@@ -27,20 +27,21 @@ const PATIENCE: usize = 8;
 const LARGE_PATIENCE: usize = 25;
 /// Number of passes after which slave nodes keep their targets.
 const SEARCHING_PASSES: usize = 3;
-/// Number of passes after which forces of pairs settle.
+/// Number of passes from which on the equal-force rule makes the forces of pairs settle.
 const SETTLED_PASSES: usize = 4;
 
 /// An attempt at one static increment.
 pub(super) struct StaticAttempt<'a, 'm> {
     pub passes: Passes<'a, 'm>,
-    /// The path from which the passes start, in place of the rigid motion of the bodies.
+    /// The path from which the passes start; if `None`, they start from the rigid motion of the bodies.
     pub guess: Option<&'a Path>,
 }
 
 impl<'m> StaticAttempt<'_, 'm> {
     /// Solves the increment, starting from the motion of the last one, with factors that are kept as long as they pay,
-    /// then with new factors in every pass. If both fail, the increment starts from rest, and then with K* stiffened by
-    /// closed pairs: K alone is soft in bending and leaves the contact forces of slender bodies few digits.
+    /// then with new factors in every pass. If both ways fail, the increment starts from rest, and then with K*
+    /// stiffened by closed pairs: K alone is soft in bending and leaves the contact forces of slender bodies few
+    /// digits.
     pub fn solve(mut self) -> Result<Solved, Failed> {
         let settings = &self.passes.problem.settings;
         let mut trace = Trace::new(settings.max_passes);

@@ -1,7 +1,7 @@
 //! Progress of an attempt at an increment, which remains when the attempt fails.
 //!
-//! Slave nodes whose contact goes to and fro from pass to pass; these keep the passes from converging if contact forces
-//! do not come to rest.
+//! Slave nodes whose contact goes to and fro from pass to pass; such nodes keep the passes from converging if contact
+//! forces do not come to rest.
 
 use std::collections::VecDeque;
 
@@ -75,7 +75,7 @@ impl Trace {
             .map_or(f64::INFINITY, |pass| pass.correction)
     }
 
-    /// Whether the passes since the last start will converge within MAX PASSES at the rate of the last ones.
+    /// Whether the passes since the last start will converge within MAX PASSES at the rate of the last passes.
     pub fn will_end(&self, settings: &Settings) -> bool {
         let corrections = self.corrections();
         match end_of(&corrections, settings.tolerance) {
@@ -112,7 +112,7 @@ impl Trace {
         }
     }
 
-    /// Course of the passes; `None` if they were too few to show one.
+    /// Course of the passes; `None` if there were too few passes to judge.
     fn course(&self, tolerance: f64) -> Option<Course> {
         let alternations = self.contact.alternations();
         let corrections = self.corrections();
@@ -142,7 +142,7 @@ impl Trace {
     }
 }
 
-/// Number, from 1, of the pass after which the corrections grew, if they did.
+/// Number, from 1, of the pass after which the corrections grew; `None` if they did not grow.
 fn growth(corrections: &[f64]) -> Option<usize> {
     let (smallest, least) = (corrections.iter().enumerate()).min_by(|p, q| p.1.total_cmp(q.1))?;
     let last = *corrections.last()?;
@@ -251,7 +251,7 @@ impl PassContacts {
             .collect()
     }
 
-    /// The two states between which a slave node went to and fro, if it did.
+    /// The two states between which a slave node went to and fro; `None` if it did not.
     fn of_slave(&self, slave: SlaveKey) -> Option<Alternation> {
         let own = |touches: &[Touch]| -> Vec<Touch> {
             let is_own = |touch: &&Touch| touch.pair.key.slave() == slave;
@@ -294,7 +294,7 @@ fn alternation(p: &[Touch], q: &[Touch]) -> Option<Alternation> {
 mod tests {
     use super::*;
 
-    /// The failure of passes with the given corrections, after other passes.
+    /// The failure of an attempt whose last passes have the given corrections, after other passes.
     fn failed(cause: Cause, corrections: &[f64]) -> Failed {
         let mut trace = Trace::default();
         let pass = |correction| PassReport {

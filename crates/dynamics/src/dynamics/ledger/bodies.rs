@@ -19,7 +19,7 @@ pub(crate) struct BodyMasses {
     share: Vec<f64>,
 }
 
-/// Displacement and velocity, the momentum p = M V of the nodes, and the results of the elements.
+/// Displacement and velocity of the nodes, their momentum p = M V, and the results of the elements.
 pub(crate) struct Moving<'a> {
     pub u: &'a [f64],
     pub v: &'a [f64],

@@ -124,8 +124,8 @@ impl Ledger {
     }
 
     /// Changes the ledger to a step of another procedure at a state with the velocities of the new step. Kinetic energy
-    /// that bodies lose as they come to rest is numerical dissipation; energy that supports give as they begin to move
-    /// is their work.
+    /// that bodies lose as they come to rest counts as numerical dissipation; energy that supports give as they begin
+    /// to move counts as work of the supports.
     pub fn change_procedure(&mut self, problem: &StepProblem, state: &State) {
         problem.mass.write_product(&state.v, &mut self.momentum);
         let kinetic = dot(&state.v, &self.momentum) / 2.0;
@@ -298,8 +298,8 @@ impl Ledger {
     }
 
     /// Enters the work of a static increment that began at `start` with the strain energy `strain0`. Between two
-    /// equilibria, loads, internal force and normal contact forces act with the mean of their two values, eq. (12.7)
-    /// and eq. (12.8).
+    /// equilibria, loads, internal force and normal contact forces act with the mean of their values at start and end,
+    /// eq. (12.7) and eq. (12.8).
     fn enter_equilibrium(
         &mut self,
         problem: &StepProblem,
@@ -359,7 +359,7 @@ impl Ledger {
     }
 
     /// Bound of the work that the round-off of forces may do in a static increment. No pass can balance the round-off
-    /// of forces; forces of elements without unknowns count too.
+    /// of forces. The bound includes the forces of elements without unknowns.
     ///
     /// ```text
     /// max n |d|,   n >= 4 eps K_ii |U|      eq. (9.17)
@@ -394,7 +394,7 @@ impl Ledger {
     /// Checks that all energies are finite.
     ///
     /// # Errors
-    /// Returns [`Cause::NotFinite`] with the node that moves most, or is the fastest, in `state`.
+    /// If not, returns [`Cause::NotFinite`] with the node that moves most, or is the fastest, in `state`.
     pub fn check(&self, state: &State) -> Result<(), Cause> {
         let e = &self.energy;
         let energies = [

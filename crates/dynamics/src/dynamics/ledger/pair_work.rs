@@ -91,7 +91,7 @@ pub(super) fn fit_impulse_work(solved: &Solved, dt: f64) -> f64 {
         .sum()
 }
 
-/// Forces in an equilibrium, with which the work of the next static increment begins.
+/// Forces in an equilibrium from which the work of the next static increment is computed.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct EndForces {
     /// Load and internal force over all dofs (force).
@@ -115,8 +115,8 @@ impl EndForces {
         }
     }
 
-    /// Forces at a state that is no result of a static increment: the forces that balance the internal force count as
-    /// load.
+    /// Forces at a state that does not come from a static increment: the forces that balance the internal force count
+    /// as load.
     pub fn at(problem: &StepProblem, state: &State) -> Result<Self, Cause> {
         let motion = state.motion();
         let internal = problem.elements.internal_force(motion)?;
@@ -136,7 +136,7 @@ impl EndForces {
         missing
     }
 
-    /// Forces of supports, including those that equations and bodies that turn hand on to them, (dof, force). The
+    /// Forces of supports (dof, force), including forces that equations and turning bodies hand on to supports. The
     /// forces hold at displacements `u`: the end of an increment `d`, or its start.
     pub fn of_supports(&self, problem: &StepProblem, [u, d]: [&[f64]; 2]) -> Vec<(usize, f64)> {
         let unknowns = &problem.unknowns;
@@ -154,8 +154,8 @@ impl EndForces {
         force
     }
 
-    /// Turns the forces of removed contacts, and of supports that the next step does not have, into loads; returns them
-    /// (dof, force), eq. (12.9).
+    /// Turns the forces of removed contacts, and of supports that the next step does not have, into loads; returns
+    /// these loads (dof, force), eq. (12.9).
     pub fn release(
         &mut self,
         removed: &[usize],
@@ -197,8 +197,8 @@ impl EndForces {
     /// ```
     ///
     /// Pn* = Pn0 + tau (Pn1 - Pn0) is the normal force at which the pair begins to slide, with tau = (1 -+ Pt0/(mu
-    /// Pn0))/2. From the slide on |Pt| = mu Pn, and Pn is linear, so the pair slides with the mean force. A pair that
-    /// opens has only the force of its start.
+    /// Pn0))/2. While the pair slides, |Pt| = mu Pn changes linearly, so the pair slides with the mean of its forces. A
+    /// pair that opens has only the force of its start.
     pub fn works(&self, solved: &Solved, end: &EndForces) -> (Vec<PairWork>, f64) {
         let d = &solved.d;
         let (before, after) = (self.of_slaves(), end.of_slaves());
@@ -258,7 +258,7 @@ impl EndForces {
         (works, tangential + friction)
     }
 
-    /// Work, along the path d, of a force that changes linearly between its two values.
+    /// Work, along the path d, of a force that changes linearly from its value at the start to its value at the end.
     pub fn trapezoid(d: &[f64], [from, to]: [&[f64]; 2]) -> f64 {
         (dot(d, from) + dot(d, to)) / 2.0
     }

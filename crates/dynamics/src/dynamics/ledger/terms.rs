@@ -28,7 +28,7 @@ impl Kinematics<'_> {
 }
 
 /// Forces of an increment over all dofs (force). Forces on dofs that follow others, and on nodes of rigid bodies, have
-/// been handed over to the dofs that hold or drive them.
+/// been handed over to the dofs that hold or drive these dofs.
 pub(super) struct HandedOver<'f> {
     load: Cow<'f, [f64]>,
     internal: Cow<'f, [f64]>,
@@ -67,7 +67,7 @@ impl<'f> HandedOver<'f> {
     }
 
     /// Energy that the backward Euler scheme removes from the free motion beyond the change of the kinetic energy: the
-    /// sum over all dofs, from their inertia, less the sum over the dofs of supports.
+    /// sum over all dofs, computed from the inertia, less the sum over the dofs of supports.
     ///
     /// ```text
     /// (d - dt V_mid).M A      eq. (4.27)
@@ -137,8 +137,8 @@ pub(super) fn scheme_dissipation(
     internal_work - (strain1 - strain0) - damping - material_dissipation
 }
 
-/// Strain energy at the end of an increment before nodes without mass came to rest (energy), computed from the energy
-/// at rest:
+/// Strain energy at the end of an increment before nodes without mass come to rest (energy), computed from the energy
+/// after it:
 ///
 /// ```text
 /// W1 + R - (work of the loads on the way to the rest)      eq. (6.15)
@@ -155,9 +155,9 @@ pub(super) fn enter_pair_works(energy: &mut Energy, works: &[PairWork]) {
     }
 }
 
-/// Enters the returns and losses of landings and releases. The terms of landings are D of eq. (6.5) with the work of
-/// the supports, eq. (6.10), and the friction taken back, eq. (6.13); the terms of releases are R and the work of the
-/// loads on the way to the rest, eq. (6.15).
+/// Enters the returns and losses of landings and releases. The terms of landings are the energy D of eq. (6.5) with the
+/// work of the supports, eq. (6.10), and the friction taken back, eq. (6.13); the terms of releases are the loss R and
+/// the work of the loads while nodes come to rest, eq. (6.15).
 pub(super) fn enter_returned(energy: &mut Energy, returned: &Returned) {
     let Release {
         loss, load_work, ..
@@ -186,7 +186,7 @@ pub(super) fn work_within(travel: &[f64], missing: &[f64], reactions: &[(usize, 
     reactions.iter().fold(dot(travel, missing), of_supports)
 }
 
-/// The balance of all energies; `start` is T + W at the start of the analysis:
+/// The balance of all energies; `start` is the energy T + W at the start of the analysis:
 ///
 /// ```text
 /// balance = T + W - (T + W)_start - external_work - thermal_work - normal_contact_work
@@ -218,7 +218,7 @@ mod tests {
         );
     }
 
-    /// Forces of an increment of which none is handed over to other dofs.
+    /// Forces of an increment in which no dof hands its force over to other dofs.
     fn forces(load: [f64; 2], internal: [f64; 2], contact: [f64; 2]) -> HandedOver<'static> {
         let own = |force: [f64; 2]| Cow::Owned(force.to_vec());
         HandedOver {
@@ -311,7 +311,7 @@ mod tests {
     }
 
     /// A spring of energy k u⁴/4 whose force is evaluated at mid-increment, a dashpot c, and a flow that dissipates
-    /// 1/2. The force of the spring at u/2 is k u³/8, so its work is k u⁴/8 less than its energy.
+    /// 1/2. The force of the spring at u/2 is k u³/8, so this work is less than the energy of the spring by k u⁴/8.
     #[test]
     fn the_scheme_dissipates_what_no_other_term_has() {
         let (k, u, c, dt): (f64, f64, f64, f64) = (3.0, 2.0, 0.5, 0.25);
@@ -323,7 +323,7 @@ mod tests {
     }
 
     /// A load R holds a node on a spring k at u until its contact opens; then the node comes to rest at R/k. The node
-    /// loses k (u - R/k)²/2, by which W - R.u decreases.
+    /// loses the energy k (u - R/k)²/2, by which the potential W - R.u decreases.
     #[test]
     fn the_strain_energy_before_the_rest_is_that_of_the_place_left() {
         let (k, load, u) = (4.0, 1.0, 0.75);
@@ -350,8 +350,8 @@ mod tests {
         }
     }
 
-    /// The works of two pairs are added to those in the ledger. The work of a fit belongs to the supports of the fit
-    /// and is entered there.
+    /// The works of two pairs are added to the works in the ledger. The work of a fit belongs to the supports of the
+    /// fit and is entered there.
     #[test]
     fn pairs_add_their_normal_work_and_their_friction() {
         let mut energy = Energy {
@@ -371,8 +371,8 @@ mod tests {
         assert_eq!(energy, expected);
     }
 
-    /// Returns and releases leave the balance unchanged if the kinetic energy has changed by them. D, the work of
-    /// supports and the energy from friction are gained; the strain energy has lost R less the work of loads.
+    /// Returns and releases leave the balance unchanged if the kinetic energy has changed by them. The motion gains the
+    /// energy D, the work of supports and the energy from friction; the strain energy loses R less the work of loads.
     #[test]
     fn what_is_given_back_keeps_the_balance() {
         let mut energy = Energy {

@@ -1,5 +1,5 @@
-//! Touches: contacts of two bodies from the landing of a first node until no node is closed. Landings of nodes that
-//! take over from nodes that have opened. See docs/theory/impacts.md, Touches.
+//! Touches: contacts of two bodies from the landing of a first node until no node is closed. Also finds landings of
+//! nodes that take over from nodes that have opened. See docs/theory/impacts.md, Touches.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
 use crate::model::{Bodies, Mesh};
 use crate::vectors::{angle, difference};
 
-/// Angle (rad) from which on a surface has a corner, at which a contact ends however large it is.
+/// Angle (rad) from which on a surface has a corner, where a contact area ends, whatever its size.
 const CORNER: f64 = 1.0;
 
 /// One side of a touch: a body, or the rigid surface of a contact.
@@ -128,7 +128,7 @@ impl Touches {
     }
 }
 
-/// The two partners of a constraint in increasing order, and 1 if the slave is the first, else -1.
+/// The two partners of a constraint in increasing order, and 1 if the slave is the first partner, else -1.
 fn partners(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
     let [s, a, _] = constraint.pair().nodes;
     let side = |node: usize| match bodies.of_node[node] {
@@ -141,8 +141,8 @@ fn partners(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
     }
 }
 
-/// The two partners of a constraint in increasing order, and 1 if the slave surface of the contact is on the first,
-/// else -1.
+/// The two partners of a constraint in increasing order, and 1 if the slave surface of the contact belongs to the first
+/// partner, else -1.
 fn sides(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
     let (both, sign) = partners(bodies, constraint);
     (
@@ -176,7 +176,7 @@ impl TouchUnderWay {
     }
 
     /// Nodes that land after others have opened, with the work Pn (Bn d) of their landings. If more nodes land than
-    /// have opened, each counts with the same share, since their order is arbitrary.
+    /// have opened, each landing counts with the same share, since the order of the nodes is arbitrary.
     fn hand_over(
         &mut self,
         pairs: &[(&Constraint, &ClosedPair)],

@@ -27,9 +27,9 @@ pub struct Timings {
 pub enum Outcome {
     /// All steps of the run are done.
     Finished,
-    /// An increment failed for good; the results up to it are valid.
+    /// An increment failed for good; the results before this increment are valid.
     Stopped(Box<Failure>),
-    /// The observer requested the end of the run; the results up to there are valid.
+    /// The observer requested the end of the run; the results up to this end are valid.
     Interrupted,
 }
 

@@ -22,7 +22,7 @@ pub(crate) struct SubincrementStart<'a> {
     pub ledger: &'a Ledger,
 }
 
-/// An accepted subincrement and the ledger with its energies.
+/// An accepted subincrement, and the ledger with the energies of the subincrement.
 pub(crate) struct Accepted {
     pub subincrement: Subincrement,
     pub ledger: Ledger,
@@ -30,7 +30,7 @@ pub(crate) struct Accepted {
 
 impl Accepted {
     /// Finishes a converged subincrement of the `nominal` increment, which has been halved `halvings` times, and
-    /// accepts it if it passes the checks.
+    /// accepts the subincrement if it passes the checks.
     pub fn new(
         problem: &StepProblem,
         workspace: &mut Workspace,

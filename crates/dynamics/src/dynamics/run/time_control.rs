@@ -34,13 +34,13 @@ pub(crate) trait TimeControl {
         None
     }
 
-    /// Divides an interval that failed, or whose truncation error is too large.
+    /// Divides an interval that has failed, or whose truncation error is too large.
     fn failed(&mut self, interval: &Interval, error: Option<f64>);
 
     /// Transfers the progress of the nominal increment to or from an archive.
     ///
     /// # Errors
-    /// Returns an error if the archive is of another kind of control.
+    /// The archive belongs to another kind of time control.
     fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError>;
 
     /// Whether an interval of this length may be cut once more; `dt_min` is the least length that

@@ -33,7 +33,8 @@ impl<'m> Temperatures<'m> {
         all
     }
 
-    /// Writes (1 - theta1) T0 + theta1 T1, at which an increment is balanced; T0 are the temperatures at its start.
+    /// Writes the temperatures (1 - theta1) T0 + theta1 T1 at which an increment is balanced; T0 are the temperatures
+    /// at its start, T1 those at its end.
     pub fn write_weighted(
         &self,
         theta1: f64,
