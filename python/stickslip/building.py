@@ -63,10 +63,9 @@ class Building(ABC):
         """Appends the mesh: nodes, elements, sets, and its sides as surfaces.
 
         In bodies of revolution x is the radius and y goes along the axis. `formulation` is a word of FORMULATIONS;
-        elements of a shape without such a type, for example triangles, get the type without it. The nodes of an element
-        set become a node set of the same name. Returns the number of its first node; the node with index i of the mesh
-        has this number plus i. A second mesh continues the numbers of the first one.
-        """
+        elements of a shape without such a type, for example triangles, get their type without a formulation. The nodes
+        of an element set become a node set of the same name. Returns the number of its first node; the node with index
+        i of the mesh has this number plus i. A second mesh continues the numbers of the first mesh. """
         ends = element_types(plane, formulation)
         node, element = self._next_number("NODE"), self._next_number("ELEMENT")
         self.add("NODE", *((node + at, *map(float, place)) for at, place in enumerate(mesh.points)))
@@ -115,8 +114,8 @@ class Building(ABC):
         return self.extend(material(name, young, poisson, density, "", **damping))
 
     def hencky(self, name: str, young: float, poisson: float, density: float, **damping: float) -> Self:
-        """Appends Hencky's material, for large strains: Kirchhoff stress proportional to logarithmic strain; damping
-        `alpha`, `beta`."""
+        """Appends Hencky's material, for large strains: Kirchhoff stress proportional to logarithmic strain; with the
+        damping `alpha` and `beta`."""
         return self.extend(material(name, young, poisson, density, "HENCKY", **damping))
 
     def plastic(
@@ -129,8 +128,8 @@ class Building(ABC):
         kinematic: bool = False,
         **damping: float,
     ) -> Self:
-        """Appends a metal with pairs of yield stress and plastic strain, the first at strain 0; with `kinematic`
-        hardening there are two pairs."""
+        """Appends a metal with pairs of yield stress and plastic strain, the first pair at plastic strain 0; with
+        `kinematic` hardening there are two pairs."""
         if not yield_stresses or yield_stresses[0][1] != 0.0:
             raise Fault(f"{name}: the first yield stress is that of the plastic strain 0")
         head = "PLASTIC, HARDENING=KINEMATIC" if kinematic else "PLASTIC"
@@ -178,7 +177,7 @@ class Building(ABC):
         return self.add(f"CONTACT PAIR, INTERACTION={self._interaction(friction)}{kind}", (slave, master))
 
     def general_contact(self, friction: Number = 0.0, discretisation: Discretisation = "") -> Self:
-        """Appends general contact: every exterior face against every other."""
+        """Appends general contact: every exterior face may touch every other exterior face."""
         name = self._interaction(friction)
         self.add("CONTACT").add("CONTACT INCLUSIONS, ALL EXTERIOR")
         if discretisation:
@@ -217,19 +216,18 @@ class Building(ABC):
         return self._connect("MASS", "MASS", (node,), mass)
 
     def hinge(self, first: int, second: int) -> Self:
-        """Appends a hinge between two nodes at one place, of two rigid bodies or of nodes that ride on reference
+        """Appends a hinge between two nodes at one place, of two rigid bodies or of nodes that move with reference
         nodes."""
         if first == second:
             raise Fault(f"a hinge has two nodes, not node {first} twice")
         return self.add("MPC", ("PIN", first, second))
 
     def coupling(self, name: str, surface: str, reference: str, distributing: bool = False) -> Self:
-        """Couples the nodes of a surface to a reference node (see `node`): they ride on it as a rigid body, which turns
-        and can carry moments.
+        """Couples the nodes of a surface to a reference node (see `node`): they move with the reference node as a rigid
+        body, which turns and can carry moments.
 
-        With `distributing`, the displacement of the reference node is the mean of those of the surface nodes, and
-        forces on the reference node are distributed to these nodes in equal parts.
-        """
+        With `distributing`, the displacement of the reference node is the mean displacement of the surface nodes, and
+        forces on the reference node are distributed to these nodes in equal parts. """
         head = f"COUPLING, CONSTRAINT NAME={name}, REF NODE={reference}, SURFACE={surface}"
         return self.add(head).add("DISTRIBUTING" if distributing else "KINEMATIC")
 
@@ -264,16 +262,14 @@ class Building(ABC):
     def spring(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
         """Appends a spring between two nodes, given by their numbers, along the line between them.
 
-        `law` is its stiffness, or pairs of force and elongation with increasing elongation; beyond the pairs the force
-        is constant.
-        """
+        `law` is the stiffness of the spring, or pairs of force and elongation with increasing elongation; beyond the
+        pairs the force is constant. """
         return self._connect("SPRINGA", "SPRING", (first, second), law)
 
     def dashpot(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
         """Appends a dashpot between two nodes, given by their numbers, along the line between them.
 
-        `law` is its coefficient, or pairs of force and rate of elongation with increasing rate.
-        """
+        `law` is the coefficient of the dashpot, or pairs of force and rate of elongation with increasing rate. """
         return self._connect("DASHPOTA", "DASHPOT", (first, second), law)
 
     def _connect(
@@ -298,8 +294,8 @@ class Building(ABC):
 
     @contextmanager
     def step(self, dt: Number, duration: Number, automatic: bool = False, **settings: object) -> Iterator[Self]:
-        """Begins a dynamic step of equal increments, or of automatic ones that follow their truncation error; cards
-        that are added inside the `with` block belong to it.
+        """Begins a dynamic step of equal increments, or of automatic increments that follow their truncation error;
+        cards that are added inside the `with` block belong to the step.
 
         `settings` are parameters of *STICKSLIP: `scheme="SS22"`, `impact_time="EVENT"`.
         """
@@ -310,8 +306,8 @@ class Building(ABC):
     def static_step(
         self, dt: Number = 1.0, duration: Number = 1.0, automatic: bool = True, **settings: object
     ) -> Iterator[Self]:
-        """Begins a static step whose increments follow their number of passes, or one of equal increments; cards that
-        are added inside the `with` block belong to it."""
+        """Begins a static step whose increments follow their number of passes, or a static step of equal increments;
+        cards that are added inside the `with` block belong to the step."""
         with self._step("STATIC", dt, duration, automatic, settings):
             yield self
 
@@ -333,7 +329,8 @@ class Building(ABC):
         return self.add("INITIAL CONDITIONS, TYPE=VELOCITY", (nodes, 1, x), (nodes, 2, y))
 
     def initial_temperature(self, nodes: str, value: Number) -> Self:
-        """Appends the initial temperature of a node set, at which it is free of thermal stress; the default is 0."""
+        """Appends the initial temperature of a node set, at which the nodes are free of thermal stress; the default is
+        0."""
         return self.add("INITIAL CONDITIONS, TYPE=TEMPERATURE", (nodes, value))
 
     def temperature(self, nodes: str, value: Number, amplitude: str = "") -> Self:
@@ -341,8 +338,8 @@ class Building(ABC):
         return self.add(_with_amplitude("TEMPERATURE", amplitude), (nodes, value))
 
     def support(self, nodes: str, *directions: int, value: Number = 0.0, amplitude: str = "") -> Self:
-        """Holds a node set in directions 1 or 2 (the default is both) or 6, the angle of a rigid body; in a step it may
-        also move the set."""
+        """Holds a node set in directions 1 or 2 (the default is both) or 6, the angle of a rigid body; in a step the
+        support may also move the set."""
         rows = [(nodes, one, one, value) for one in directions or (1, 2)]
         return self.add(_with_amplitude("BOUNDARY", amplitude), *rows)
 
@@ -356,7 +353,7 @@ class Building(ABC):
         return self.add("DLOAD", (elements, "GRAV", size, x, y))
 
     def pressure(self, surface: str, size: Number, amplitude: str = "") -> Self:
-        """Appends a pressure on a surface, in a step; a positive one presses on the body."""
+        """Appends a pressure on a surface, in a step; a positive pressure presses on the body."""
         return self.add(_with_amplitude("DSLOAD", amplitude), (surface, "P", size))
 
     def history(self, nodes: str) -> Self:
@@ -365,7 +362,8 @@ class Building(ABC):
 
 
 def element_types(plane: Plane, formulation: str = "") -> dict[int, str]:
-    """Types of elements by their number of nodes; a formulation that does not exist in this plane raises a Fault."""
+    """Types of elements by their number of nodes; a formulation that does not exist in the given plane raises a
+    Fault."""
     starts = {"strain": "CPE", "stress": "CPS", "axisymmetric": "CAX"}
     if plane not in starts:
         raise Fault(f"{plane} is no plane: choose from {', '.join(starts)}")

@@ -19,7 +19,7 @@ from stickslip.whole import whole, write_text
 
 
 def vtu(result: Result, folder: Path) -> Iterator[Path]:
-    """Writes a file for every frame, and the file that lists them."""
+    """Writes a file for every frame, and the file that lists these files."""
     entries = []
     for frame in result.frames:
         path = folder / f"{result.job}_{frame.index:04d}.vtu"

@@ -80,7 +80,7 @@ class Named(Group, Generic[Each]):
 
 
 class Energy(Group):
-    """Energy ledger [I]. All accounts except the first two are sums since the start."""
+    """Energy ledger [I]. All energies except the first two (kinetic and strain energy) are sums since the start."""
 
     kinetic: Array
     strain: Array
@@ -104,14 +104,14 @@ class Energy(Group):
 
     @property
     def largest(self) -> float:
-        """Largest magnitude of the accounts, without the balance, and of the works that cancel in them; NaN if one
-        value is NaN."""
+        """Largest magnitude of the energies, without the balance, and of the works that cancel in these energies; NaN
+        if one value is NaN."""
         names = [name for name in (*ENERGIES, "scale") if name != "balance" and name in self]
         return float(np.max([np.abs(self[name]).max() for name in names]))
 
     @property
     def noise(self) -> float:
-        """Largest energy that counts as round-off."""
+        """Largest energy that counts as round-off in the balance."""
         return float(np.max(self["round_off"])) if "round_off" in self else 0.0
 
 
@@ -313,7 +313,7 @@ class History(Group):
     }
 
     def __getitem__(self, name: str) -> Any:
-        """A dataset or group by its path; groups that a result may lack are empty if they are missing."""
+        """A dataset or group by its path; a group that a result may lack is empty if it is missing."""
         if name in self._groups and name not in self._stored:
             return self._groups[name](self._result, f"{self._path}/{name}")
         return super().__getitem__(name)

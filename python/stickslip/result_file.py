@@ -1,4 +1,5 @@
-"""Result files `JOB.vtkhdf` (see docs/output.md), read with h5py alone: stored data by the paths in the file.
+"""Result files `JOB.vtkhdf` (see docs/output.md), read with h5py alone; the path of a dataset in the file gives its
+data.
 
 The file of a running or killed job is read up to the rows that are complete. Data that cannot be read raises a `Fault`.
 """
@@ -61,7 +62,8 @@ class ResultFile:
             return data[()] if start is None and end is None else data[start:end]
 
     def item(self, name: str) -> Any:
-        """A dataset or a group by its path in the file; it is kept, because finding it takes longer than reading it."""
+        """A dataset or a group by its path in the file; the object is kept, because finding an object takes longer than
+        reading it."""
         with self.reading(name):
             if name not in self._found:
                 self._found[name] = self.file[name]
@@ -125,7 +127,7 @@ class ResultFile:
 
     @cached_property
     def rigid(self) -> Integers:
-        """Segments of rigid surfaces, [segments, 2] node indices, with the obstacle on the left."""
+        """Segments of rigid surfaces, [segments, 2] node indices, with the obstacle on their left."""
         end = self.read("VTKHDF/Offsets")[len(self.cells)]
         return self.read("VTKHDF/Connectivity")[end:].reshape(-1, 2)
 

@@ -84,7 +84,7 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
 def _compare(
     x: Array, gap: Array, contact: Contact, found: list[Intrusion], noise: float, check: Check, place: str
 ) -> None:
-    """Compares the depths of slave nodes with the depth that the discretisation of the contact allows: a mean that
+    """Compares the depths of slave nodes with the depth that the discretisation of the contact allows: a mean gap that
     overlaps, eq. (7.9), has the GAP of its node."""
     check.add(0.0, DEPTH + noise, place)
     if not contact.has_means:

@@ -51,7 +51,7 @@ def outlines(results: Result) -> list[Outline]:
 
 
 def side(start: Array, end: Array, point: Array) -> Integers:
-    """Sign of the area of the triangles start, end, point: 1 when it turns left; exact."""
+    """Sign of the area of the triangles start, end, point: 1 when the triangle turns left; the sign is exact."""
     one, two = np.broadcast_arrays(
         (start[..., 0] - point[..., 0]) * (end[..., 1] - point[..., 1]),
         (start[..., 1] - point[..., 1]) * (end[..., 0] - point[..., 0]),
@@ -75,9 +75,8 @@ def _exact_side(start: tuple[float, ...], end: tuple[float, ...], at: tuple[floa
 def winding(point: Array, start: Array, end: Array, counted: Flags) -> Integers:
     """Winding number of edges around points, from the crossings of a ray to the right of each point.
 
-    `counted` [points, edges] says which edges count for each point. For a point on an edge it is the winding number of
-    either side.
-    """
+    `counted` [points, edges] says which edges count for each point. For a point on an edge, the result is the winding
+    number of either side. """
     y, low, high = point[:, None, 1], start[None, :, 1], end[None, :, 1]
     up, down = (low <= y) & (y < high), (high <= y) & (y < low)
     right = np.maximum(start[:, 0], end[:, 0])[None] > point[:, None, 0]
@@ -92,8 +91,7 @@ def winding(point: Array, start: Array, end: Array, counted: Flags) -> Integers:
 def ray_starts_inside(point: Array, before: Array, after: Array) -> Flags:
     """Whether the ray to the right of a node of an outline starts inside the body.
 
-    The ray lies infinitesimally above the node: its direction is (1, 0+).
-    """
+    The ray is turned infinitesimally upwards: its direction is (1, 0+). """
     one, two = after - point, before - point
 
     def rising(direction: Array) -> Flags:
@@ -107,7 +105,7 @@ def ray_starts_inside(point: Array, before: Array, after: Array) -> Flags:
 
 
 def distances(point: Array, start: Array, end: Array, bulges: Bulges | None = None) -> Array:
-    """Distances of points from edges [points, edges]; from curved edges across their chords."""
+    """Distances of points from edges [points, edges]; distances from curved edges are measured across the chords."""
     along = end - start
     offset = point[:, None] - start
     length = np.einsum("ei,ei->e", along, along)
@@ -144,8 +142,7 @@ def closed_hollow(point: Array, before: Array, after: Array) -> Array:
     """Overlap of the legs of closed concave corners; infinite at other nodes.
 
     At a concave corner whose legs lie on each other, the angle is zero up to round-off. If round-off makes the angle
-    negative, the node itself is covered once more, although it is far from all other edges.
-    """
+    negative, the body covers the node itself a second time, although the node is far from all other edges. """
     one, two = before - point, after - point
     lengths = np.linalg.norm(one, axis=1), np.linalg.norm(two, axis=1)
     area = np.abs(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])

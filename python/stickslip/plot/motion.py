@@ -1,10 +1,9 @@
 """Draws the motion of results: deformed shapes at chosen times, or an animation.
 
 Each time has its own panel, or, with --overlay, all times of a result share one panel. Several results are arranged
-below each other, with the same limits and the same colours. Slave nodes in contact are marked: with filled marks if
-they stick, hollow ones if they slide. Without -o the picture is written next to the first result, as JOB_motion.png;
---animation alone writes no picture.
-"""
+below each other, with the same limits and the same colours. Slave nodes in contact have filled marks if they stick, and
+hollow marks if they slide. Without -o the picture is written next to the first result, as JOB_motion.png; --animation
+alone writes no picture. """
 
 import argparse
 import shutil
@@ -93,8 +92,7 @@ def panels(rows: Sequence[Sequence[Shown]], look: Look, columns: int | None = No
     """A page with a panel for each frame.
 
     Panels of a single row are arranged so that they fill the page best, or in `columns`; if there are several rows,
-    each begins a new line of panels.
-    """
+    each row begins a new line of panels. """
     shown = [each for row in rows for each in row]
     if len(shown) > MOST:
         raise Fault(f"{len(shown)} panels find no room on a page: {MOST} at most")
@@ -217,7 +215,7 @@ def pictures_of(
 
 @style.styled
 def animate(all_results: Sequence[Result], look: Look, path: Path, frames_per_second: int) -> None:
-    """Writes an animation of all frames of the first result; others are shown at its times."""
+    """Writes an animation of all frames of the first result; other results are shown at the times of these frames."""
     times = all_results[0].frames.times
     rows = [[(each, each.frames.nearest(time).index) for each in all_results] for time in times]
     scene = Scene([each for row in rows for each in row], look)
@@ -236,9 +234,8 @@ PANELS = 6
 def chosen_times(results: Result, times: list[float] | None, interval: float | None, field: Field | None = None) -> Array:
     """The given times, or multiples of an interval, or times that represent the whole run.
 
-    The representative times are the start, the ends of the steps and the time of the largest value of the field; more
-    times between them are added up to six.
-    """
+    The representative times are the start, the ends of the steps and the time of the largest value of the field;
+    further times between these are added, up to six times. """
     if times:
         return np.array(times)
     every = results.frames.times

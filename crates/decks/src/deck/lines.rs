@@ -15,7 +15,7 @@ pub struct Line<'a> {
     pub file: FileId,
     /// Number of the line in the file, from 1.
     pub number: u32,
-    /// Number of the instance that the names and numbers of the line belong to, from 1; 0 for none.
+    /// Number of the instance that the names and numbers of the line belong to, from 1; 0 for no instance.
     pub instance: u32,
     /// Text of the line without the line end.
     pub text: &'a str,
@@ -134,15 +134,15 @@ impl<'a> Line<'a> {
         fields.map(str::trim_ascii)
     }
 
-    /// The integers without sign that the line consists of; `None` if it holds anything else.
+    /// The integers without sign that the line consists of; `None` if the line holds anything else.
     pub fn plain_integers(self) -> Option<SmallVec<[u64; 5]>> {
         self.plain_fields()
             .map(|field| field.parse().ok())
             .collect()
     }
 
-    /// The label (an integer without sign) and the coordinates of a line, 0 where they are missing; `None` if the line
-    /// has anything else, or numbers that other codes read differently.
+    /// The label (an integer without sign) and the coordinates of a line, with 0 for missing coordinates; `None` if the
+    /// line has anything else, or numbers that other codes read differently.
     pub fn plain_point(self) -> Option<(u64, [f64; 3])> {
         let mut fields = self.plain_fields();
         let label = fields.next()?.parse().ok()?;
@@ -256,9 +256,9 @@ pub(super) struct Lines<'a> {
     pub text: &'a str,
     /// Byte at which the next line starts.
     pub start: usize,
-    /// Number of the line before that byte.
+    /// Number of the line before the byte at which the next line starts.
     pub before: u32,
-    /// Number of the instance that the names and numbers of the lines belong to, from 1; 0 for none.
+    /// Number of the instance that the names and numbers of the lines belong to, from 1; 0 for no instance.
     pub instance: u32,
 }
 
@@ -297,12 +297,12 @@ impl<'a> Lines<'a> {
         memchr_iter(b'\n', text.as_bytes()).count() as u32 + u32::from(is_open)
     }
 
-    /// The data lines among these lines.
+    /// The data lines among the lines that have not been read.
     pub fn data(self) -> impl Iterator<Item = Line<'a>> + Clone {
         self.filter(|line| line.kind() == LineKind::Data)
     }
 
-    /// Splits off the lines before the next keyword line.
+    /// Splits off the unread lines before the next keyword line.
     pub fn take_block(&mut self) -> Lines<'a> {
         let end = self.start + before_keyword(self.rest());
         let block = Lines {
@@ -354,7 +354,7 @@ fn before_keyword(text: &str) -> usize {
     bytes.len()
 }
 
-/// The byte at which the first line of more than `most` bytes exceeds this length; the CR of a CRLF counts, too.
+/// The byte at which the first line of more than `most` bytes exceeds this length; the CR of a CRLF also counts.
 pub(super) fn overlong(text: &[u8], most: usize) -> Option<usize> {
     let mut start = 0;
     while text.len() - start > most {
@@ -392,7 +392,7 @@ mod tests {
         assert!(!fit("abcd") && !fit("abcd\n") && !fit("abc\nabcd\na"));
     }
 
-    /// Checks that the fast path for plain lines reads the same values as the fields do.
+    /// Checks that the fast path for plain lines reads the same values as the path through fields.
     fn assert_plain_is_fields(text: &str) {
         let line = Lines::new(FileId(0), text).next().unwrap_or(Line {
             file: FileId(0),

@@ -1,4 +1,4 @@
-//! `*AMPLITUDE`: tables of points, and functions of the time since their start.
+//! `*AMPLITUDE`: tables of points, and functions of the time since the start of the function.
 
 use super::context::Context;
 use super::names::Named;
@@ -61,7 +61,7 @@ fn curve(card: &Card, cx: &mut Context) -> Option<Curve> {
     }
 }
 
-/// Time and value as the card gives them, and the field that messages refer to.
+/// Time and value as given on the card, and the field that messages refer to.
 type Given<'a> = (f64, f64, Text<'a>);
 
 /// The points of a table; reports times that do not increase.
@@ -147,7 +147,7 @@ fn pairs<'a>(row: Line<'a>, cx: &mut Context) -> Vec<Given<'a>> {
     pairs
 }
 
-/// Largest time, value or frequency of an amplitude: products of a few of them do not overflow.
+/// Largest time, value or frequency of an amplitude, for which products of a few such numbers do not overflow.
 const LARGEST: f64 = 1e100;
 
 /// Whether numbers of an amplitude are small enough for computing.

@@ -1,5 +1,5 @@
-//! Quadrilaterals of the deck with two neighbouring corners at one node become triangles. Their sides keep the numbers
-//! that they have in the quadrilateral.
+//! Quadrilaterals of the deck with two neighbouring corners at one node become triangles. The sides of such a triangle
+//! keep their numbers in the quadrilateral.
 
 use smallvec::SmallVec;
 

@@ -1,5 +1,5 @@
 //! State that all functions of the reader share: the deck and the diagnostics. An undefined name is reported with a
-//! suggestion among the names of all kinds of objects of the deck.
+//! suggestion from the names of all kinds of objects of the deck.
 
 use super::label::{instance_of, label, number_of};
 use crate::deck::{Card, Deck, Line, Name, Placement, Text};
@@ -96,9 +96,9 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Keys of the objects that a name may mean at its place: first objects of its instance, then those of the assembly
-    /// and of the model. In `"instance.name"`, with one pair of quotation marks, each of the two names may be defined
-    /// without such marks.
+    /// Keys of the objects that a name may mean at its place: first objects of the instance there, then objects of the
+    /// assembly and of the model. In `"instance.name"`, with one pair of quotation marks, each of the two names may be
+    /// defined without such marks.
     pub fn keys_of(&self, text: Text) -> [String; 3] {
         let key = text.name_key();
         let of_instance = self.deck.instances.iter().find_map(|instance| {
@@ -112,8 +112,8 @@ impl<'a> Context<'a> {
         [self.key_of(text), key, last]
     }
 
-    /// A number such as `Block-1.12`, with the name of an instance before it, as the number alone, marked as one of
-    /// that instance.
+    /// A number such as `Block-1.12`, with the name of an instance before it, as the number alone, marked as a number
+    /// of that instance.
     pub fn in_instance<'t>(&self, text: Text<'t>) -> Text<'t> {
         if self.deck.instances.is_empty() {
             return text;
@@ -166,7 +166,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Reports an undefined name of an object of kind `what`, unless the cause may have been reported already.
+    /// Reports an undefined name of an object of kind `what`, unless a reported error may be the cause.
     pub fn undefined<'n>(
         &mut self,
         what: &str,
@@ -220,7 +220,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Reports a second card of a keyword that may appear once.
+    /// Reports a second card of a keyword that may appear only once.
     pub fn only_once(&mut self, cards: &[&Card]) {
         for card in cards.iter().skip(1) {
             let message = format!("{} appears a second time here", card.title());

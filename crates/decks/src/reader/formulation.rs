@@ -26,12 +26,13 @@ const LYING_SINE: f64 = 0.01;
 /// Part of the shorter of two faces that must lie on the other face.
 const LYING_PART: f64 = 0.1;
 
-/// Ratio of the segment lengths of two surfaces below which the first surface counts as the finer one.
+/// Ratio of the segment lengths of two surfaces below which the first surface counts as the finer surface.
 const FINER: f64 = 0.99;
 
-/// Chooses the formulation of contacts that the deck leaves open, if their nodes are slaves on both sides. Contacts with faces
-/// that lie on other bodies are surface to surface, because the conditions of nodes depend on each other there. Then two
-/// pairs of the same surfaces, one in each order, become one pair, as do two pairs that the deck makes surface to surface.
+/// Chooses the formulation of a contact for which the deck leaves it open, if nodes of both sides are slaves. Contacts
+/// with faces that lie on other bodies are surface to surface, because the conditions of single nodes depend on each
+/// other where faces lie on each other. Then two pairs of the same surfaces, one in each order, become one pair; so do
+/// two pairs that the deck makes surface to surface.
 pub(super) fn choose(model: &mut Model, cx: &mut Context) {
     warn_of_two_laws(model, cx);
     choose_for_general(model);
@@ -94,7 +95,7 @@ fn are_changed_alike(pair: [usize; 2], steps: &[Step]) -> bool {
     })
 }
 
-/// Warns about pairs in both orders whose friction differs: the forces of both add up, each by its own law.
+/// Warns about pairs in both orders whose friction differs: the forces of both pairs add up, each by its own law.
 fn warn_of_two_laws(model: &Model, cx: &mut Context) {
     for (number, contact) in model.contacts.iter().enumerate() {
         let mut before = model.contacts[..number].iter();
@@ -139,8 +140,8 @@ fn choose_for_general(model: &mut Model) {
 
 /// Two contact pairs of the same surfaces, one in each order.
 struct BothOrders {
-    /// Numbers of the two contacts: first the one whose slave is the finer surface (or that stands first), then the
-    /// other.
+    /// Numbers of the two contacts: first the contact whose slave is the finer surface (or that stands first), then the
+    /// other contact.
     contacts: [usize; 2],
     /// Formulation of both contacts.
     formulation: ContactFormulation,
@@ -150,7 +151,7 @@ struct BothOrders {
     becomes_one: bool,
 }
 
-/// The contact pairs that stand in both orders, from surface to surface or not, in the order of the second pair.
+/// The contact pairs in both orders, with either formulation, in the order of the second pair.
 fn both_orders(model: &Model) -> Vec<BothOrders> {
     let mut first = HashMap::new();
     let mut both = Vec::new();
@@ -211,8 +212,8 @@ fn may_be_one(pair: [&Contact; 2], model: &Model) -> bool {
     laws[0] == laws[1] && !is_of_one_side && pair.into_iter().all(may)
 }
 
-/// Tells that pairs in both orders have become one contact. Advises against pairs that stay in both orders although
-/// their faces lie on each other.
+/// Reports, as a note, that pairs in both orders have become one contact. Advises against pairs that stay in both
+/// orders although their faces lie on each other.
 fn report_both_orders(
     model: &Model,
     (of_one, of_two): (&[&BothOrders], &[&BothOrders]),
@@ -275,7 +276,7 @@ fn held_nodes(model: &Model) -> Vec<bool> {
     held
 }
 
-/// Number of the faces that lie on one of `others`, on another body, where at least one of the two can move.
+/// Number of the faces that lie on one of `others`, on another body, where at least one of the two faces can move.
 fn lying_faces([faces, others]: [&[[usize; 2]]; 2], place: &Place) -> usize {
     let (x, bodies) = (&place.mesh.coordinates, place.bodies);
     let is_held = |face: [usize; 2]| face.iter().all(|&node| place.held[node]);
@@ -302,7 +303,7 @@ fn lying_faces([faces, others]: [&[[usize; 2]]; 2], place: &Place) -> usize {
     lies.into_iter().filter(|lies| *lies).count()
 }
 
-/// Whether two faces run in opposite directions along one line and share a part of it.
+/// Whether two faces run in opposite directions along one line and share a part of this line.
 fn lie_on_each_other([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
     let [e, f] = [difference(a, b), difference(p, q)];
     let [of_e, of_f] = [length(e), length(f)];
@@ -316,7 +317,8 @@ fn lie_on_each_other([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
     is_near(from) && is_near(to) && common >= LYING_PART * of_e.min(of_f)
 }
 
-/// Replaces surface to surface by node to surface where it cannot be used, with a warning that says why.
+/// Replaces surface to surface by node to surface where surface to surface cannot be used, with a warning that says
+/// why.
 pub(super) fn restrict(model: &mut Model, cx: &mut Context) {
     for number in 0..model.contacts.len() {
         let contact = &model.contacts[number];
@@ -332,7 +334,7 @@ pub(super) fn restrict(model: &mut Model, cx: &mut Context) {
     }
 }
 
-/// Reason why a contact cannot be surface to surface; `None` if it can.
+/// Reason why a contact cannot be surface to surface; `None` if it can be surface to surface.
 fn not_from_surface_to_surface(contact: &Contact, model: &Model) -> Option<&'static str> {
     let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
     let is_of_faces = |surface: &Surface| matches!(surface.kind, SurfaceKind::Faces(_));

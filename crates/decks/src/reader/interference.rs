@@ -30,7 +30,7 @@ pub(crate) struct Pairs<'a> {
 }
 
 impl Interferences {
-    /// Adds the overlap that general contact presses out in the first step.
+    /// Adds the overlap that general contact removes in the first step.
     pub fn first_step(&mut self, contacts: &[Contact]) {
         let fitted = contacts.iter().enumerate();
         for (contact, _) in fitted.filter(|(_, contact)| contact.is_interference_fit) {
@@ -111,7 +111,7 @@ impl Interferences {
         }
     }
 
-    /// Allows an overlap, which must not begin below the overlap that is left of the step before.
+    /// Allows an overlap, which must not begin below the overlap that the step before has left.
     fn add(
         &mut self,
         contact: usize,

@@ -13,7 +13,7 @@ use std::collections::{HashMap, HashSet};
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
 pub(crate) struct MeshIndex {
-    /// The mesh: nodes that belong to elements, and elements. The sections of its elements are not known yet.
+    /// The mesh: nodes that belong to elements, and elements. The elements of the mesh have no sections yet.
     pub mesh: Mesh,
     /// Instances of parts.
     pub instances: Vec<Instance>,
@@ -220,7 +220,7 @@ impl MeshIndex {
         }
     }
 
-    /// Removes nodes that are not used, and gives the others new indices.
+    /// Removes nodes that are not used, and gives the other nodes new indices.
     pub fn keep_nodes(&mut self, used: &[bool]) {
         let mut count = 0;
         let numbers = used.iter().map(|&used| {
@@ -292,8 +292,8 @@ fn first_number<'l>(labels: impl Iterator<Item = &'l u64>) -> u64 {
     1 + others.max().copied().unwrap_or(0)
 }
 
-/// Gives labels of instances new numbers from `next` on; returns the index, the instance and the number in the part of
-/// each.
+/// Gives labels of instances new numbers from `next` on; returns index, instance and number in the part of each
+/// renumbered node or element.
 fn renumbered<'l>(
     labels: impl Iterator<Item = &'l mut u64>,
     mut next: u64,

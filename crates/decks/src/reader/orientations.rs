@@ -11,7 +11,7 @@ use std::cell::Cell;
 /// Two unit vectors, normal to each other.
 pub(super) type Axes = [[f64; 2]; 2];
 
-/// Help where the axes of an orientation cannot be used.
+/// Help for messages about an orientation whose axes cannot be used.
 const HELP: &str =
     "springs and dashpots take the points a, b and c of SYSTEM=RECTANGULAR in the plane";
 

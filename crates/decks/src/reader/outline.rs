@@ -8,7 +8,7 @@ use crate::diagnostics::Code;
 pub(crate) struct CardBlock<'a> {
     /// The card that begins the block.
     pub head: &'a Card,
-    /// The cards that belong to the first one.
+    /// The cards that belong to the card that begins the block.
     pub parts: Vec<&'a Card>,
     /// Index of the step that the block stands in.
     pub step: Option<usize>,
@@ -101,7 +101,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// Places a card that belongs to no block, according to the levels at which it may stand.
+    /// Finds the place of a card that belongs to no block, by the levels at which the card may stand.
     fn place_at(&mut self, card: &'a Card, levels: Levels, cx: &mut Context) {
         let is_in_step = self.open && levels.has(self.step_level());
         if is_in_step && levels.hold_from_the_start() {

@@ -26,7 +26,7 @@ pub(crate) struct Cut {
 }
 
 impl Cut {
-    /// Equations of the nodes behind the cut, u_b = u_a - q n, eq. (3.16).
+    /// Equations u_b = u_a - q n of the nodes b behind the cut, eq. (3.16).
     pub fn equations(&self) -> impl Iterator<Item = Equation> + '_ {
         let of_pair = |&[a, b]: &[usize; 2]| {
             [0, 1].map(|i| {
@@ -116,8 +116,8 @@ fn faces(
     Some(found)
 }
 
-/// Smallest cosine of the angle between the normal of the data line and that of the faces; with a smaller cosine the
-/// two sides would slip on each other.
+/// Smallest cosine of the angle between the normal of the data line and the normal of the faces; with a smaller cosine
+/// the two sides would slip on each other.
 const TANGENT: f64 = 0.01;
 
 /// The normal of a section, out of the elements of its faces: the normal of the data line, with either sign, or else

@@ -1,6 +1,6 @@
 //! `*TIE`: slave nodes are moved onto the segments of the master surface that they face, or keep their place beside
-//! them. Tied nodes follow these segments, or the master below the slave faces, at all times. See
-//! docs/theory/contact.md, Ties.
+//! these segments. Tied nodes follow the segments that they face, or the master below the slave faces, at all times.
+//! See docs/theory/contact.md, Ties.
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;
@@ -28,8 +28,8 @@ pub(crate) struct Ties {
     pub all: Vec<Tie>,
     /// Places of the ties.
     pub spans: Vec<Span>,
-    /// Nodes of both surfaces with the segments that they are tied to or lie at; contact between such a node and
-    /// segment is left out.
+    /// Nodes of both surfaces, each with the segments to which it is tied or at which it lies; contact between such a
+    /// node and segment is left out.
     bonds: Vec<(usize, Segment)>,
 }
 
@@ -99,7 +99,7 @@ pub(super) fn read(
     ties
 }
 
-/// The rows of a card.
+/// The rows of a card `*TIE`.
 fn rows_of(
     card: &Card,
     names: &mut Names,
@@ -142,7 +142,7 @@ fn rows_of(
     rows
 }
 
-/// Which nodes a card ties; `None` after a reported error.
+/// Choice of the nodes that a card ties; `None` after a reported error.
 fn reach(card: &Card, sets: &Sets, cx: &mut Context) -> Option<TieReach> {
     if let Some(field) = card.value("TIED NSET") {
         if card.has("POSITION TOLERANCE") {
@@ -240,8 +240,8 @@ impl Faced {
     }
 }
 
-/// The sides of a slave surface that are tied as a whole: all their nodes are tied, by this tie or an earlier one, or
-/// belong to the master.
+/// The sides of a slave surface that are tied as a whole: all their nodes are tied, by this tie or by an earlier tie,
+/// or belong to the master.
 fn sides(
     row: &TieRow,
     faced: &Faced,
@@ -309,7 +309,7 @@ fn shortest_sides(segments: &[Segment], mesh: &Mesh) -> HashMap<usize, f64> {
     shortest
 }
 
-/// Segments with a tree for finding the nearest one.
+/// Segments with a tree that finds the nearest segment.
 struct Nearest<'a> {
     segments: &'a [Segment],
     x: &'a [[f64; 2]],
@@ -382,7 +382,7 @@ fn adjust(row: &TieRow, faced: &Faced, mesh_index: &mut MeshIndex, cx: &mut Cont
     }
 }
 
-/// Reports nodes that are not tied: too far from the master, or tied already.
+/// Reports nodes that are not tied because they are too far from the master or tied already.
 fn report(
     row: &TieRow,
     own: &[(usize, Segment)],
@@ -464,7 +464,7 @@ fn covered(
 }
 
 impl Ties {
-    /// Leaves tied nodes out of the contacts with the segments that they are tied to.
+    /// Leaves tied nodes out of the contacts with the segments to which they are tied.
     pub fn leave_out(
         &self,
         contacts: &mut [Contact],

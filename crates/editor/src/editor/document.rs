@@ -43,7 +43,7 @@ pub(super) struct Spot {
     pub line: usize,
     /// First character.
     pub start: usize,
-    /// The character behind the last one.
+    /// The character behind the last character of the range.
     pub end: usize,
 }
 
@@ -108,7 +108,8 @@ impl Document {
         self.renew(first, last, new_last);
     }
 
-    /// Renews the pieces of the lines from `first` to `last` after a change that makes `new_last` of the line `last`.
+    /// Renews the pieces of the lines from `first` to `last` after a change by which the line `last` becomes the line
+    /// `new_last`.
     fn renew(&mut self, first: usize, last: usize, new_last: usize) {
         let mut start = 0;
         let mut from = 0;
@@ -131,7 +132,7 @@ impl Document {
         self.pieces.splice(from..to, anew);
     }
 
-    /// Number of the character at a position; a position beyond the end of its line or of the text counts as that end.
+    /// Number of the character at a position; a position beyond the end of its line or of the text counts as this end.
     fn character(&self, position: Position) -> usize {
         let line = position.line as usize;
         if line >= self.rope.len_lines() {

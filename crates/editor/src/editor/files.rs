@@ -1,5 +1,5 @@
-//! The files that the server knows: files that are open in the editor, and files of the disk that they include or that
-//! include them.
+//! The files that the server knows: files that are open in the editor, and files on the disk that include these or are
+//! included by them.
 
 use super::document::Document;
 use crate::deck::open_regular;
@@ -144,7 +144,7 @@ fn read(path: &Path) -> Option<(String, Option<(SystemTime, u64)>)> {
     Some((text, stamp))
 }
 
-/// Decks near a file whose text contains the name of the file, so that one of them may include it.
+/// Decks near a file whose text contains the name of the file, so that such a deck may include the file.
 pub(super) fn neighbours(path: &Path) -> Vec<PathBuf> {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
         return Vec::new();

@@ -176,7 +176,7 @@ impl Server {
         let _ = self.out.send(message);
     }
 
-    /// Starts the check of the deck that has waited longest, if its check is due and no other deck is being checked.
+    /// Starts the check of the deck that has waited longest, if this check is due and no other deck is being checked.
     fn start_check(&mut self) {
         let now = Instant::now();
         let due = self.waiting.iter().filter(|(_, when)| **when <= now);
@@ -223,7 +223,7 @@ impl Server {
         }
     }
 
-    /// Sends the diagnostics of a deck to the editor, and removes those of files that the deck no longer has.
+    /// Sends the diagnostics of a deck to the editor, and removes the diagnostics of files that the deck no longer has.
     fn show(&mut self, outcome: Outcome) {
         let Some(found) = outcome.found else { return };
         let old = self.shown.insert(outcome.root.clone(), found);
@@ -233,7 +233,7 @@ impl Server {
         paths.iter().for_each(|path| self.publish(path));
     }
 
-    /// Sends the diagnostics of a file to the editor: those of all decks that have it.
+    /// Sends the diagnostics of a file to the editor, from all decks that contain the file.
     fn publish(&self, path: &Path) {
         let Some(uri) = self.workspace.files.uri(path) else {
             return;

@@ -15,7 +15,7 @@ const PI: &str = "pi";
 /// Kind of the object that a name means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum What {
-    /// An object of this kind.
+    /// An object of the given kind.
     Thing(Kind),
     /// A parameter of `*PARAMETER`.
     Parameter,
@@ -36,7 +36,7 @@ impl What {
 pub(super) struct Symbol {
     /// Kind of the object.
     pub what: What,
-    /// Scope that the object belongs to.
+    /// Scope to which the object belongs.
     pub scope: Scope,
     /// Key by which the name is compared.
     pub key: Arc<str>,
@@ -355,7 +355,7 @@ impl Collector<'_> {
         });
     }
 
-    /// The scopes in which a name is looked up that stands in `scope`, the nearest first.
+    /// The scopes in which a name in `scope` is looked up, the nearest scope first.
     fn scopes(&self, scope: &Scope) -> Vec<Scope> {
         let mut all = match scope {
             Scope::Deck => Vec::new(),

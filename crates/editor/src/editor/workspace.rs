@@ -21,7 +21,7 @@ pub(super) struct View {
     pub symbols: Symbols,
 }
 
-/// All files and decks.
+/// All files and decks of the editor.
 #[derive(Debug, Default)]
 pub(super) struct Workspace {
     /// The files.
@@ -45,7 +45,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The name at this place.
+    /// The name at the place.
     pub fn occurrence(&self) -> Option<&Occurrence> {
         self.view.symbols.at(self.file, self.line, self.column)
     }
@@ -72,7 +72,7 @@ impl Workspace {
         self.views.remove(path);
     }
 
-    /// Cards and names of the deck with this main file.
+    /// Cards and names of the deck with the given main file.
     pub fn view(&mut self, root: &Path) -> Arc<View> {
         let known = self.views.get(root);
         if let Some(view) = known.filter(|view| view.cards.are_of(&self.files)) {

@@ -223,8 +223,8 @@ pub(super) fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
         .help("choose units in which the numbers of the deck are not so extreme");
 }
 
-/// Distance, relative to the shortest element side, below which two nodes lie at the same place: mesh generators write
-/// about as many digits.
+/// Distance, relative to the shortest element side, below which two nodes lie at the same place; it corresponds to the
+/// digits that mesh generators write.
 const SAME_PLACE: f64 = 1e-6;
 
 /// Largest absolute value up to which a whole number keeps its value as an integer.
@@ -260,8 +260,8 @@ pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &[Span], cx
         .help("the elements part there: merge the nodes, or define contact between the surfaces");
 }
 
-/// The largest whole number up to x. The processors that the program is built for have no instruction for it, only an
-/// instruction that cuts off the digits behind the point.
+/// The largest whole number that is at most x. The processors for which the program is built have no instruction for
+/// this rounding, only an instruction that cuts off the digits behind the point.
 fn floor(x: f64) -> f64 {
     if x.abs() > MOST_WHOLE {
         return x.floor();
@@ -301,8 +301,8 @@ impl Joined {
     }
 }
 
-/// Pairs of nodes of elements at the same place, the smaller index first; `cell` is the length of the shortest element
-/// side.
+/// Pairs of nodes of elements at the same place, with the smaller index first; `cell` is the length of the shortest
+/// element side.
 fn coincident(mesh: &Mesh, cell: f64) -> Vec<[usize; 2]> {
     let mut used = vec![false; mesh.node_count()];
     for &node in mesh.elements.iter().flat_map(|element| &element.nodes) {

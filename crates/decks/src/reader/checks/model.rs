@@ -62,7 +62,7 @@ pub(crate) fn proportion(
     }
 }
 
-/// Warns at the first step about a model in which nothing ever moves.
+/// Warns at the first step about a model in which no step moves anything.
 pub(crate) fn motion(model: &Model, cards: &[StepCards], cx: &mut Context) {
     let Some(first) = cards.first() else {
         return;
