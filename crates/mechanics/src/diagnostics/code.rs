@@ -201,7 +201,7 @@ codes! {
     UnusedNode "D310" "A node belongs to no element."
         "The node is a left-over of meshing, or its element is missing."
         "Remove the node. Nodes of rigid surfaces and equations need no element and get no warning."
-    BadRange "D311" "A generated range does not end at its last number, or its increment is zero or has the wrong sign."
+    BadRange "D311" "A generated range runs backwards, or its steps do not meet its last number."
         "The difference of last and first is no multiple of the increment."
         "Correct first, last and increment."
     SetCycle "D312" "A set contains itself."
