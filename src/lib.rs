@@ -36,7 +36,7 @@
 //! | projection, xi | foot of the perpendicular from a node to a segment; xi is 0 at a and 1 at b |
 //! | contact target | a segment, or the convex corner between two segments, that a slave node must not penetrate |
 //! | corner | a node between two segments of a surface: convex or concave; sharp below 120 degrees |
-//! | common normal | normal of contact between a node and a corner, from the normal cones of both |
+//! | common normal | normal of contact between a node and a corner, from the normal cones of node and corner |
 //! | interior | the inside of the bodies, followed from element to element behind a segment |
 //! | slave index | number of a slave node among the slave nodes of all contacts |
 //! | pair | one slave node with one contact target; a CONTACT PAIR of the deck is a *contact* |

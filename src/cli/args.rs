@@ -214,7 +214,7 @@ pub(super) struct RunArgs {
     pub verbose: bool,
 }
 
-/// Options of `run` that change what is computed or written.
+/// Options of `run` that change the computation or the results.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Options {
     strict: bool,
@@ -226,7 +226,7 @@ pub(super) struct Options {
 }
 
 impl RunArgs {
-    /// The options of `run` that change what is computed or written, as text.
+    /// The options of `run` that change the computation or the results, as text.
     pub fn options(&self) -> String {
         let options = Options {
             strict: self.deck.strict,

@@ -332,7 +332,7 @@ type ReadDeck = fn(&DeckArgs, Option<EarlierDeck>, bool) -> Loaded;
 /// Function that solves all steps of a model.
 type Solve = fn(&PreparedModel, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
-/// Reader and solver that the commands call; tests replace them.
+/// Reader and solver that the commands call; tests replace these functions.
 pub(super) struct Numerics {
     pub load: ReadDeck,
     pub solve: Solve,

@@ -15,7 +15,7 @@ const PYTHON: &str = "STICKSLIP_PYTHON";
 /// The environment variable that tells the package which program this is.
 const PROGRAM: &str = "STICKSLIP";
 
-/// Python code that ends with success if Python has the package; the option -P, which is passed too, needs Python 3.11.
+/// Python code that ends with success if Python has the package; the option -P, with which it runs, needs Python 3.11.
 const HAS_PACKAGE: &str =
     "import importlib.util, sys; sys.exit(importlib.util.find_spec('stickslip') is None)";
 
@@ -47,7 +47,7 @@ pub(super) fn run(command: &PackageCommand) -> Result<Exit, CliError> {
 /// A Python interpreter that may have the package.
 struct Python {
     path: PathBuf,
-    /// Folder of the package, if it is not installed.
+    /// Folder of the package, if the package is not installed.
     package: Option<PathBuf>,
 }
 

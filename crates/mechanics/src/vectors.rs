@@ -14,8 +14,7 @@ pub fn dot(p: [f64; 2], q: [f64; 2]) -> f64 {
     p[0] * q[0] + p[1] * q[1]
 }
 
-/// Cross product p x q, the component out of the plane; it is positive if q points to the left of
-/// p.
+/// Cross product p x q, the component out of the plane; the product is positive if q points to the left of p.
 #[inline]
 pub fn cross(p: [f64; 2], q: [f64; 2]) -> f64 {
     p[0] * q[1] - p[1] * q[0]
@@ -215,9 +214,9 @@ impl CircleTree {
         values
     }
 
-    /// Visits members approximately in the order of their distance from a point, until all others
-    /// are further away than the limit (length) that the last visit returned. Groups for which
-    /// `is_admitted` is false, by number and circle, are skipped with all their members.
+    /// Visits members approximately in the order of their distance from a point, until all other members are further
+    /// away than the limit (length) that the last visit returned. Groups for which `is_admitted` is false, by number
+    /// and circle, are skipped with all their members.
     pub fn visit_near(
         &self,
         point: [f64; 2],

@@ -1,6 +1,6 @@
 //! Archive of the values that a run hands on from increment to increment, one after the other and exact to the bit. One
-//! function `transfer` of each structure lists the values of the archive, both to write and to read them, so that the
-//! two orders cannot differ. See docs/restart.md.
+//! function `transfer` of each structure lists the values of the archive, both for writing and for reading, so that the
+//! order of reading cannot differ from the order of writing. See docs/restart.md.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -157,7 +157,7 @@ fn without_assembly(mut deck: Deck, d: &mut Diagnostics) -> Deck {
 
 /// A part with its cards.
 pub(super) struct Part {
-    /// Name of the part, unless it cannot be read.
+    /// Name of the part; `None` if the name cannot be read.
     pub name: Option<Name>,
     /// `*PART`.
     pub head: Card,
@@ -264,7 +264,7 @@ impl Structure {
         self.items.push(Item::Instance(head, Vec::new()));
     }
 
-    /// Ends `level`; the cards behind it belong to `outer`.
+    /// Ends `level`; the cards that follow belong to `outer`.
     fn end(&mut self, level: Level, outer: Level, card: &Card, d: &mut Diagnostics) {
         if self.level == Level::Instance && level == Level::Assembly {
             report_open(self.level, card.span, d);

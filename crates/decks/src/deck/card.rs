@@ -78,7 +78,7 @@ impl Card {
         self.param(name).is_some()
     }
 
-    /// The value of a parameter, if it is given and can be read.
+    /// The value of a parameter, if the parameter is given and the value can be read.
     pub fn value(&self, name: &str) -> Option<Text<'_>> {
         let param = self.param(name).filter(|param| !param.faulty)?;
         let (text, span) = param.value.as_ref()?;
@@ -115,7 +115,7 @@ impl Card {
         self.rows.read.set(ALL_ROWS);
     }
 
-    /// Warns about parameters that the reader has not used, and reports the first row that it has not read.
+    /// Warns about parameters that the reader has not used, and reports the first row that the reader has not read.
     pub fn report_unused(&self, d: &mut Diagnostics) {
         let read = self.rows.read.get();
         let may_be_left = read != ALL_ROWS && self.keyword.data != Data::Text;
@@ -150,7 +150,7 @@ impl Card {
 pub struct DataLines {
     blocks: Vec<LineBlock>,
     instance: u32,
-    /// Number of rows from the first one to the last one that the reader has asked for; [`ALL_ROWS`] for all rows.
+    /// Number of rows up to the last row that the reader has asked for; [`ALL_ROWS`] for all rows.
     read: Cell<usize>,
 }
 

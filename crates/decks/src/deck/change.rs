@@ -10,7 +10,7 @@ use crate::diagnostics::{Code, Diagnostic, FileId, Sources, Span};
 struct CardField<'a> {
     card: &'a str,
     field: Text<'a>,
-    /// Whether the field is the first one of its row.
+    /// Whether the field is the first field of its row.
     begins: bool,
 }
 

@@ -145,7 +145,7 @@ fn collect(
 
 /// A file being read.
 struct OpenFile {
-    /// Canonical path of the file, which is the same for all paths to it.
+    /// Canonical path of the file, which is the same for all paths to the file.
     identity: PathBuf,
     /// Folder of the file.
     folder: PathBuf,
@@ -189,7 +189,7 @@ struct Collector<'a> {
     earlier: Option<Box<EarlierDeck>>,
     /// Texts of the files of the earlier deck that is being read, by their names.
     earlier_files: Vec<(String, String)>,
-    /// Range of the cards of the steps of the earlier deck; it ends where the cards of that deck end.
+    /// Range of the cards of the steps of the earlier deck; the range ends where the cards of the earlier deck end.
     earlier_steps: Option<Range<usize>>,
 }
 

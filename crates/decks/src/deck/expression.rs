@@ -108,7 +108,7 @@ fn fault(at: Range<usize>, message: &str) -> Fault {
 }
 
 /// Deepest nesting: the number of parentheses open at a time plus the number of signs in a row, or the number of powers
-/// if it is larger.
+/// if this number is larger.
 fn nesting(text: &str) -> usize {
     let (mut open, mut row, mut most) = (0_usize, 0_usize, 0_usize);
     for byte in text.bytes().filter(|byte| !byte.is_ascii_whitespace()) {

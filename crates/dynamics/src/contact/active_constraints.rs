@@ -52,8 +52,8 @@ impl ConstraintSet<'_> {
     }
 }
 
-/// The pairs that are constraints in a subincrement between impacts: those that touch at its start,
-/// and those that have joined them.
+/// The pairs that are constraints in a subincrement between impacts: the pairs that touch at its start, and the pairs
+/// that have become active since.
 ///
 /// There is no impact where a touching node slides on to a segment that faces nearly the same way, or that the node was
 /// not in front of. A node that slides into a wall lands on the wall at a later impact. With surface to surface there
@@ -83,9 +83,9 @@ struct Touching {
 }
 
 impl ActiveConstraints {
-    /// Active constraints at the displacements `u0`, which the search covers: the pairs that touch there. `means` are
-    /// the constraints of contact from surface to surface at `u0`, `before` the pairs that carried forces up to the
-    /// start. Discs are always active: they land within the subincrement.
+    /// Active constraints at the displacements `u0`, which the search covers: the pairs that touch at these
+    /// displacements. `means` are the constraints of contact from surface to surface at `u0`, `before` the pairs that
+    /// carried forces up to the start. Discs are always active: they land within the subincrement.
     pub fn new(search: &Search, u0: &[f64], means: &[Constraint], before: &ClosedPairs) -> Self {
         let start = Positions::new(search.coordinates(), u0);
         let mean = |c: &Constraint| MeanAtStart {

@@ -1,4 +1,4 @@
-//! Rows of contact with a curved face, made from those of its chord. See docs/theory/geometry.md, Curved faces.
+//! Rows of contact with a curved face, made from the rows of its chord. See docs/theory/geometry.md, Curved faces.
 
 use super::bulge::Bulge;
 use super::constraint::{RowForm, RowPair, product, sum_of};
@@ -17,7 +17,7 @@ pub(super) struct OfChord {
     pub normal_motion: [f64; 6],
 }
 
-/// How the force rows Bn', Bt' of a curved face differ from the rows Bn, Bt of its chord, with L = (l0 + l1)/2:
+/// Difference between the force rows Bn', Bt' of a curved face and the rows Bn, Bt of its chord, with L = (l0 + l1)/2:
 ///
 /// ```text
 /// beta = D/L,  s = sqrt(1 + beta²)

@@ -1,4 +1,4 @@
-//! Bulges of curved faces: how far the face is outside of the chord of a segment, and gaps to it. See
+//! Bulges of curved faces: distance of a face outwards from the chord of a segment, and gaps to the face. See
 //! docs/theory/geometry.md, Curved faces.
 
 use super::projection::Projection;
@@ -83,8 +83,8 @@ impl Bulge {
         }
     }
 
-    /// This bulge for points of faces: the cubic goes on beyond the ends of the segment. An end that is a mid-side node
-    /// (`is_between`) is replaced by the vertex x_v of eq. (3.21).
+    /// The same bulge for points of faces: its cubic goes on beyond the ends of the segment. An end that is a mid-side
+    /// node (`is_between`) is replaced by the vertex x_v of eq. (3.21).
     pub(super) fn of_points(self, is_between: [bool; 2]) -> Self {
         let [_, rise, ..] = self.coefficients;
         let coefficients = match is_between {

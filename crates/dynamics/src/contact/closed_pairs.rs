@@ -1,6 +1,7 @@
-//! Closed contact pairs with their forces and states, which a pass or an increment hands on to the next one. The closed
-//! pairs start the next complementarity problem, choose the pairs of impulses, and tell the tunnelling check and the
-//! landings which nodes are in contact. See docs/theory/complementarity.md and docs/theory/impacts.md.
+//! Closed contact pairs with their forces and states, which a pass or an increment hands on to the next pass or
+//! increment. The closed pairs start the next complementarity problem, choose the pairs of impulses, and tell the
+//! tunnelling check and the landings which nodes are in contact. See docs/theory/complementarity.md and
+//! docs/theory/impacts.md.
 
 use super::constraint::{Configurations, Constraint};
 use super::keys::{ConstraintKey, NodeAtSegment, SlaveKey};
@@ -64,8 +65,7 @@ impl ClosedPair {
     }
 }
 
-/// The pairs in contact, with increasing keys: those that carry a force, or, at an impact, those
-/// that touch.
+/// The pairs in contact, with increasing keys: the pairs that carry a force or, at an impact, the pairs that touch.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ClosedPairs(Vec<ClosedPair>);
 
@@ -79,7 +79,7 @@ impl FromIterator<ClosedPair> for ClosedPairs {
 }
 
 impl ClosedPairs {
-    /// Replaces the pairs by others, which come with increasing keys.
+    /// Replaces the pairs by other pairs, which come with increasing keys.
     pub fn set(&mut self, pairs: impl Iterator<Item = ClosedPair>) {
         self.0.clear();
         self.0.extend(pairs);

@@ -31,7 +31,7 @@ pub struct Compliance {
     groups: Vec<usize>,
     /// Body of every unknown: its connected group in the matrix of the elements alone.
     bodies: Vec<usize>,
-    /// The inverses computed so far, for all constraints or for those of some bodies.
+    /// The inverses computed so far, for all constraints or for the constraints of some bodies.
     inverses: BTreeMap<ConstraintGroup, Vec<InverseBlock>>,
 }
 
@@ -42,8 +42,8 @@ pub enum ConstraintGroup {
     All,
     /// The constraints between the same bodies, which are given by increasing numbers.
     Bodies(Vec<usize>),
-    /// A part, along the surfaces, of the constraints between the same bodies; contact and part
-    /// number identify it.
+    /// A part, along the surfaces, of the constraints between the same bodies; the contact and the number of the part
+    /// identify the part.
     Part(Vec<usize>, [usize; 2]),
 }
 
@@ -430,8 +430,7 @@ impl Responses {
         }
     }
 
-    /// Writes the columns of `together` constraints, the `first` one and those after it, to the
-    /// rows of `count` constraints.
+    /// Writes the columns of `together` constraints, which begin with the `first`, to the rows of `count` constraints.
     #[inline(always)]
     fn write_rows(&mut self, first: usize, [together, count]: [usize; 2]) {
         let size = self.rows.len() / self.width;
@@ -464,7 +463,7 @@ impl Responses {
     }
 
     /// (B_l T) Y of eq. (5.1), Y being the rows: gaps and slips of the constraints under a unit normal and a unit
-    /// tangential force of l. With `adds` the result is added to the sums, otherwise it replaces them.
+    /// tangential force of l. With `adds` the result is added to the sums, otherwise the result replaces the sums.
     #[inline(always)]
     pub fn product<S: Simd>(&self, simd: S, l: &[UnknownEntry], sums: [&mut [f64]; 2], adds: bool) {
         let terms = Terms {

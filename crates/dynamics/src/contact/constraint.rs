@@ -99,7 +99,7 @@ pub struct Constraint {
     pub mu: f64,
     /// Whether the coefficient depends on slip rate or pressure.
     pub mu_varies: bool,
-    /// Length s of the normal row, relative to that of a straight face: the normal force is s Pn, eq. (3.31).
+    /// Length s of the normal row, relative to the length for a straight face: the normal force is s Pn, eq. (3.31).
     pub stretch: f64,
     /// Decrease of the overlap that a fit allows within the increment (length), eq. (3.15).
     pub shrinkage: f64,
@@ -186,8 +186,9 @@ impl Constraint {
         self.product(&self.derivative_rows().tangential, |dof| v[dof])
     }
 
-    /// A gap or slip of the pair (length), or 0 if it is negligible against the segment, eq. (4.21). The remains of a
-    /// motion that has died away must not become the scale of a complementarity problem, whose forces would underflow.
+    /// A gap or slip of the pair (length), or 0 if the value is negligible against the length of the segment, eq.
+    /// (4.21). The remains of a motion that has died away must not become the scale of a complementarity problem, whose
+    /// forces would underflow.
     pub fn resolved(&self, length: f64) -> f64 {
         match length.abs() < NOTHING * self.scale {
             true => 0.0,
@@ -267,7 +268,7 @@ impl Constraint {
         own.map(|(_, force)| force)
     }
 
-    /// The parts of the constraint's normal force on the nodes of the contact's slave surface, and on those of its
+    /// The parts of the constraint's normal force on the nodes of the contact's slave surface, and on the nodes of its
     /// master.
     pub fn surface_parts(&self) -> [SurfaceParts; 2] {
         let all: SmallVec<[(usize, [f64; 2]); 8]> = self.nodal_forces([1.0, 0.0]).collect();

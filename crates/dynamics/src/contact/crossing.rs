@@ -70,7 +70,7 @@ pub struct Crossing {
 /// ```
 ///
 /// For motion of second order r x e is a quartic in time with the sign of the gap. A node that
-/// moves along the line of the segment meets it once, when it reaches one of its ends.
+/// moves along the line of the segment meets the segment once, when the node reaches one of the ends.
 pub fn crossings(nodes: &[QuadraticMotion; 3], dt: f64) -> Vec<Crossing> {
     if is_clear(nodes, dt) {
         return Vec::new();

@@ -1,5 +1,5 @@
-//! Delassus operator Q = G W B^T of a set of constraints, and the frictional complementarity
-//! problem it forms. See docs/theory/complementarity.md, Problem of a pass (paper eqs 36 to 47).
+//! Delassus operator Q = G W B^T of a set of constraints, and the frictional complementarity problem with this
+//! operator. See docs/theory/complementarity.md, Problem of a pass (paper eqs 36 to 47).
 
 use nalgebra::{DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};
@@ -10,7 +10,7 @@ use super::compliance::{Compliance, ConstraintGroup, GroupRows, Responses, Unkno
 use super::constraint::Constraint;
 use crate::lcp::{FreeUnknowns, FrictionalLcp};
 
-/// Memory of the Delassus operators of a matrix; the next matrix uses it again.
+/// Memory of the Delassus operators of a matrix; the next matrix uses this memory again.
 #[derive(Debug, Default)]
 pub struct DelassusSpace {
     /// Entries of Q.
@@ -66,8 +66,8 @@ const PANEL: usize = 128;
 const PIECE: usize = 16;
 const THREADS: usize = 64;
 
-/// Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential ones. Q is a sum over the groups of
-/// unknowns; a group couples the constraints that act on it.
+/// Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential rows and columns. Q is a sum over the
+/// groups of unknowns; a group couples the constraints that act on it.
 fn delassus(
     constraints: &[&Constraint],
     compliance: &Compliance,
@@ -163,7 +163,7 @@ struct GroupSum<'a> {
     responses: &'a [Responses],
     /// Number of all constraints.
     n: usize,
-    /// Whether the part is added to the entries of Q, or replaces them.
+    /// Whether the part is added to the entries of Q, or replaces these entries.
     adds: bool,
 }
 

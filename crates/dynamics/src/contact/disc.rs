@@ -136,7 +136,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Coordinate of the centre along a segment, or along the arc of which it is a chord: 0 at its start, 1 at its end.
+    /// Coordinate of the centre along a segment, or along the arc of which the segment is a chord: 0 at its start, 1 at
+    /// its end.
     fn xi(&self, segment: usize, k: usize) -> f64 {
         let at = |node: usize| self.positions[k].of(node);
         let Some(SurfaceArc { nodes, arc, .. }) = self.surfaces.arc_of(segment) else {
@@ -156,8 +157,8 @@ type DiscRow = SVector<f64, 8>;
 /// J, the rotation by a right angle to the left.
 const J: Matrix2<f64> = Matrix2::new(0.0, -1.0, 1.0, 0.0);
 
-/// Positions of the nodes of a disc constraint at the start and at the end: its centre s, the node that turns with it,
-/// and a and b. The entries of a row follow the order s, turning node, a, b.
+/// Positions of the nodes of a disc constraint at the start and at the end: the centre s, the node that turns with the
+/// disc, and the master nodes a and b. The entries of a row follow the order s, turning node, a, b.
 struct NodePositions {
     form: RowForm,
     nodes: [[[f64; 2]; 4]; 2],
@@ -192,8 +193,7 @@ impl NodePositions {
     }
 }
 
-/// The maps for x_b - x_a, and for the vector from the centre of the disc to the node that turns
-/// with it.
+/// The maps for x_b - x_a, and for the vector from the centre of the disc to the node that turns with the disc.
 fn arms() -> [Map; 2] {
     let (mut e, mut arm) = (Map::zeros(), Map::zeros());
     for i in 0..2 {

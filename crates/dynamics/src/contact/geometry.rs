@@ -44,7 +44,7 @@ impl JoinedNodes {
 pub struct ContactSurfaces {
     /// Slave nodes.
     pub slaves: Vec<usize>,
-    /// Faces of the slave surface; if the surface is made of nodes, the exterior faces at them.
+    /// Faces of the slave surface; if the surface is made of nodes, the exterior faces at these nodes.
     pub slave_faces: Vec<[usize; 2]>,
     /// For every slave node the nodes before and after it on its own surface, if both exist.
     pub adjacent: Vec<Option<[usize; 2]>>,
@@ -284,8 +284,7 @@ impl ContactSurfaces {
         self
     }
 
-    /// Whether the surface has a corner between the segments `i` and `j`, the next one, at the
-    /// positions `x`.
+    /// Whether the surface has a corner between the segment `i` and the next segment `j`, at the positions `x`.
     fn has_corner(&self, x: &[[f64; 2]], i: usize, j: usize) -> bool {
         let [e, f] = [i, j].map(|i| {
             let [a, b] = self.segments[i].map(|node| x[node]);

@@ -1,5 +1,5 @@
-//! Interior of the bodies: whether a straight line from a segment stays in the elements behind it.
-//! See docs/theory/geometry.md.
+//! Interior of the bodies: whether a straight line from a segment stays in the elements behind the segment. See
+//! docs/theory/geometry.md.
 //!
 //! The line is followed from element to element through their common sides. The elements on the
 //! line tell a node on the far side of a thin body from a node of another part that has penetrated
@@ -73,8 +73,8 @@ impl Interior {
 
     /// Whether a node behind the line of a segment has penetrated the body there through this
     /// segment, at the positions `at`. The node has penetrated the body if it lies in the body,
-    /// belongs to none of the elements on the line, and is nearer to the segment than to the far
-    /// side. Without an element behind the segment, everything there is inside.
+    /// does not belong to any element on the line, and is nearer to the segment than to the far side. If there is no
+    /// element behind the segment, every place behind it counts as inside.
     pub fn takes_in(
         &self,
         segment: [usize; 2],
@@ -85,8 +85,7 @@ impl Interior {
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
-    /// Whether the node lies in the body, at any depth: it may have entered through another
-    /// segment.
+    /// Whether the node lies in the body, at any depth: the node may have entered through another segment.
     pub fn contains(
         &self,
         segment: [usize; 2],
@@ -197,7 +196,7 @@ impl Interior {
         (start <= end).then_some([start, end])
     }
 
-    /// Whether a line stays in the body and the node belongs to none of the elements on it.
+    /// Whether a line stays in the body and the node does not belong to any element on the line.
     fn is_foreign(&self, line: &CrossedElements, node: usize) -> bool {
         line.stays && !self.has_node(line, node)
     }

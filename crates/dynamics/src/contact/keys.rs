@@ -35,8 +35,8 @@ impl SlaveKey {
 )]
 pub struct ConstraintKey {
     pub(super) slave: SlaveKey,
-    /// Number of the segment in its contact; at a corner, of the segment before the corner. With surface to surface:
-    /// number of the run of segments; it is larger on the second side of a corner.
+    /// Number of the segment in its contact; at a corner, of the segment before the corner. With surface to surface
+    /// this is the number of the run of segments, which is larger on the second side of a corner.
     pub(super) segment: usize,
 }
 

@@ -29,7 +29,7 @@ impl Constraint {
     }
 
     /// Derivative of the contact force with respect to the iterate, d(Bn^T Pn + Bt^T Pt)/dU at constant Pn and Pt, over
-    /// the dofs of the constraint (force/length); it is not symmetric with friction.
+    /// the dofs of the constraint (force/length); with friction the matrix is not symmetric.
     pub fn change(&self, force: [f64; 2], at: &Configurations) -> DMatrix<f64> {
         match &self.source.target {
             Target::Segment(segment) => segment.change(self, force, at),
@@ -39,8 +39,7 @@ impl Constraint {
         }
     }
 
-    /// Gap of the constraint between other configurations, and the length to which it is relative
-    /// there.
+    /// Gap of the constraint between other configurations, and the length to which this gap is relative.
     pub fn gap_and_scale(&self, at: &Configurations) -> (f64, f64) {
         match &self.source.target {
             Target::Segment(segment) => segment.gap_and_scale(&self.source.pair, at),
@@ -113,7 +112,7 @@ impl Constraint {
         }
     }
 
-    /// Keys of the slave node at each of its segments; at a corner there are two.
+    /// Keys of the slave node at each of its segments; at a corner there are two keys.
     pub fn segments(&self) -> impl Iterator<Item = ConstraintKey> {
         let behind = match &self.source.target {
             Target::Corner(corner) => Some(ConstraintKey {
@@ -125,7 +124,8 @@ impl Constraint {
         [Some(self.key), behind].into_iter().flatten()
     }
 
-    /// The slave node whose state the constraint tells: for a mean gap the node that names it, for a disc its centre.
+    /// The slave node whose state the constraint tells: for a mean gap the node that names the constraint, for a disc
+    /// its centre.
     pub fn named_slave(&self) -> usize {
         self.source.pair.slave
     }
@@ -153,7 +153,8 @@ impl Constraint {
         }
     }
 
-    /// Whether the slave node of a pair is beyond the ends of its segment in the iterate; at a corner it is not.
+    /// Whether the slave node of a pair is beyond the ends of its segment in the iterate; at a corner the result is
+    /// false.
     pub fn is_beyond_ends(&self, at: &Configurations) -> bool {
         let [s, a, b] = at.iterate(self.pair().nodes);
         let is_beyond = || !(0.0..=1.0).contains(&project(s, a, b).xi);

@@ -19,8 +19,7 @@ impl CornerContact {
     /// The constraint of a slave node at the corner b between the segments from a to b and from b to c; its nodes are
     /// s, a, b, c.
     ///
-    /// With the weight w of the corner, the segment i before it and the segment j behind it, eq.
-    /// (10.3):
+    /// With the weight w, the segment i before and the segment j behind the corner, gap and rows are, eq. (10.3):
     ///
     /// ```text
     /// g  = ((1 - w) g_i + w g_j)/m        m = |(1 - w) n_i + w n_j|
@@ -61,7 +60,7 @@ impl CornerContact {
     }
 }
 
-/// Lengths m of the blended normal and tangential rows at s; with straight faces both are 1.
+/// Lengths m of the blended normal and tangential rows at s; with straight faces both lengths are 1.
 fn lengths_of_rows(corner: Corner, sides: &[SegmentRows; 2]) -> [f64; 2] {
     let length = |of: fn(&SegmentRows) -> [f64; 2]| {
         let [p, q] = sides.each_ref().map(of);

@@ -26,7 +26,7 @@ impl SegmentRows {
         (self.bend.as_ref()).map_or([self.force, self.derivative], |bend| bend.chord)
     }
 
-    /// Length of the normal row relative to that of a straight face: factor of the friction bound, eq. (3.31).
+    /// Length of the normal row relative to the length for a straight face: factor of the friction bound, eq. (3.31).
     pub fn stretch(&self) -> f64 {
         self.bend.as_ref().map_or(1.0, |bend| bend.stretch)
     }
@@ -74,7 +74,7 @@ impl SegmentContact {
         }
     }
 
-    /// Gap of the constraint, and the length to which it is relative.
+    /// Gap of the constraint, and the length to which this gap is relative.
     pub(super) fn gap_and_scale(&self, pair: &Pair, at: &Configurations) -> (f64, f64) {
         let [s, a, b] = at.iterate(self.nodes(pair));
         let projection = self.segment.bulge.below(project(s, a, b));
@@ -132,7 +132,7 @@ pub(super) fn segment_rows(
 }
 
 /// Projection and rows between the positions of s, a and b at start and end. `height` is the distance of s from the
-/// segment when the constraint is closed; end rows use it, discrete gradients do not.
+/// segment when the constraint is closed; end rows use this height, discrete gradients do not.
 pub(super) fn rows_between(
     places: [[[f64; 2]; 3]; 2],
     (height, bulge): (f64, &Bulge),

@@ -292,8 +292,8 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         (self.territory.corners).is_some_and(|corners| corners.are_of_master)
     }
 
-    /// Whether the slave node meets segments by itself and not in a mean gap: it is a node, or a corner of contact from
-    /// surface to surface.
+    /// Whether the slave node meets segments by itself and not in a mean gap: this holds with node to surface, and for
+    /// corners with surface to surface.
     pub fn meets_segments(&self) -> bool {
         self.surfaces.slave_segments.is_none()
     }
@@ -393,7 +393,8 @@ struct FacedAtStart {
 }
 
 impl<'m> Territory<'m> {
-    /// The territories of a contact and of its corners; the numbers of the corners follow those of the slave nodes.
+    /// The territories of a contact and of its corners; the numbers of the corners follow the numbers of the slave
+    /// nodes.
     fn of_contact(
         contact: usize,
         (surfaces, reach): (&'m ContactSurfaces, f64),
@@ -456,7 +457,7 @@ impl<'m> Territory<'m> {
     }
 
     /// Sets the overlaps that a fit allows the slave nodes of the contact; corners, which a fit does not name, get the
-    /// largest of them.
+    /// largest of these overlaps.
     fn allow(&mut self, allowed: &[[f64; 2]]) {
         self.is_fitted = allowed.iter().any(|[_, end]| *end != 0.0);
         self.allowed = match self.corners {

@@ -15,7 +15,7 @@ use super::tolerances::{
 };
 use crate::vectors::angle;
 
-/// Segments near a node; usually there are few.
+/// Segments near a node; usually there are few segments.
 type Segments = SmallVec<[usize; 8]>;
 
 /// Selection of the targets of a slave node.
@@ -192,8 +192,8 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// The segment of a run over which the node lies, if it has slid there across gentle corners from another segment
-    /// over which it was at the start.
+    /// The segment of a run over which the node lies, if the node has slid there across gentle corners from another
+    /// segment over which it was at the start.
     fn slid_on(&self, run: &[usize]) -> Option<ContactTarget> {
         let is_within = |i: usize| (-SLID..=1.0 + SLID).contains(&self.xi(i));
         let slid_from = |i: usize| {
@@ -252,7 +252,7 @@ impl SlaveNode<'_> {
     }
 
     /// Whether the force on a node that has slid from segment i to j stays near the normal of j: its tilt kappa =
-    /// (g0_j - g0_i)/s is that of the surface between the two.
+    /// (g0_j - g0_i)/s is the slope of the surface between the two segments.
     fn tilts_gently(&self, i: usize, j: usize) -> bool {
         let (start, now) = (self.project_at_start(j), self.project(j));
         let slip = (start.length + now.length) / 2.0 * (now.xi - start.xi);
@@ -267,8 +267,8 @@ impl SlaveNode<'_> {
     /// The neighbour of segment `i` round a convex corner near the node, if the surface of the node does not face
     /// segment `i`. Where a corner slides over a corner, only the face that the node's surface faces constrains the
     /// node; behind the other face lies the node's own body. At the start the node must have been over the face of the
-    /// neighbour, or near its end with half of one of its own faces over it: the long line of a punch does not stop a
-    /// node beside the punch.
+    /// neighbour, or near its end with half of one of the node's own faces over this face: the long line of a punch
+    /// does not stop a node beside the punch.
     fn adjacent_to_faced_away(&self, i: usize) -> Option<usize> {
         if self.is_opposite(i)? {
             return None;
@@ -348,7 +348,7 @@ impl SlaveNode<'_> {
             .flatten()
     }
 
-    /// The corner at an end of a segment, if the node meets it.
+    /// The corner at an end of a segment, if the node meets this corner.
     fn corner_target(&self, i: usize) -> Option<ContactTarget> {
         let xi = self.xi(i);
         let before = self.surfaces.previous[i].filter(|_| xi < CORNER_ZONE);
@@ -358,7 +358,8 @@ impl SlaveNode<'_> {
             .or_else(|| after.and_then(|j| self.corner_between(i, j)))
     }
 
-    /// The corner between the segments `i` and `j` if the node meets it, node against node, or the vertex of a face.
+    /// The corner between the segments `i` and `j`, if the node meets it as node against node or if it is the vertex of
+    /// a face.
     fn corner_between(&self, i: usize, j: usize) -> Option<ContactTarget> {
         let (p, q) = (self.project(i), self.project(j));
         // distance from the corner along the sum of both tangents, which is at most 2 long
@@ -418,8 +419,8 @@ impl SlaveNode<'_> {
         is_vertex.then_some(0.5)
     }
 
-    /// Whether a target of an earlier pass is the vertex of a hollow that is no longer found: the node has left the
-    /// vertex towards one of its segments, and the body lies behind both segments.
+    /// Whether a target of an earlier pass is the vertex of a hollow that the selection no longer finds: the node has
+    /// left the vertex towards one of its segments, and the body lies behind both segments.
     pub fn has_left_hollow(&self, target: &ContactTarget, found: &[ContactTarget]) -> bool {
         let is_hollow = |corner: Corner| {
             let is_same =

@@ -109,13 +109,13 @@ impl SlaveNode<'_> {
     }
 
     /// Distance from the end of a segment, on which the node has the projection `p`, within which the other segment of
-    /// a concave corner constrains the node too (length).
+    /// a concave corner also constrains the node (length).
     pub(crate) fn corner_reach(&self, segment: usize, p: &Projection) -> f64 {
         CORNER_ZONE * p.length + 2.0 * self.displacement_at(segment, p)
     }
 
-    /// Whether the node was over a segment at the start, or nearer to its end than `near` (length) with half of one of
-    /// the node's own faces over the segment.
+    /// Whether the node was over a segment at the start, or nearer to an end of the segment than `near` (length) with
+    /// half of one of the node's own faces over the segment.
     pub(crate) fn was_over(&self, segment: usize, near: f64) -> bool {
         let [a, b] = self.surfaces.segments[segment].map(|n| self.start.of(n));
         let is_over =
@@ -147,7 +147,7 @@ impl SlaveNode<'_> {
     }
 
     /// Sine of the turn to the left from one segment to the next: positive at a convex corner,
-    /// negative at a concave one; beyond a right angle it is 1 or -1.
+    /// negative at a concave corner; beyond a right angle it is 1 or -1.
     pub(crate) fn corner_sine(&self, i: usize, j: usize) -> f64 {
         self.corner_sine_at(self.now, i, j)
     }

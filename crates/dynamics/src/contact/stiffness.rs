@@ -1,5 +1,5 @@
 //! Stiffness of a closed constraint in K*: the change of its nodal forces with the iterate, and the stiffening that
-//! keeps it closed. See docs/theory/time.md.
+//! keeps the constraint closed. See docs/theory/time.md.
 //!
 //! # Derivation
 //!
@@ -30,7 +30,7 @@ use super::node_to_segment::{SegmentRows, couple};
 use super::projection::project;
 use super::target::{CornerContact, Pair, Segment, SegmentContact};
 
-/// Places of the dofs of s, a and b, and of s, b and c, among those of the constraint.
+/// Places, among the dofs of the constraint, of the dofs of s, a and b, and of the dofs of s, b and c.
 const PLACES: [[usize; 6]; 2] = [[0, 1, 2, 3, 4, 5], [0, 1, 4, 5, 6, 7]];
 
 impl SegmentContact {

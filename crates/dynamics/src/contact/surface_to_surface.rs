@@ -2,7 +2,7 @@
 //! points inside the slave faces. See docs/theory/geometry.md, From surface to surface.
 //!
 //! A point moves like a node: x_q = (1 - eta) x_1 + eta x_2 with constant eta is linear in the positions of the nodes,
-//! so its rows and stiffness are those of a node on a segment.
+//! so it has the rows and the stiffness of a node on a segment.
 
 use std::array::from_fn;
 
@@ -38,7 +38,7 @@ struct Mean {
 }
 
 /// Adds the pairs of all slave nodes of a contact between start and iterate: one constraint for each side of a node
-/// over each run of master segments that covers it.
+/// over each run of master segments that covers this side.
 ///
 /// ```text
 /// g_j = (1/c_j) sum_q w_q N_j(eta_q) g_q,   c_j = sum_q w_q N_j(eta_q)    eq. (3.18)
@@ -121,10 +121,10 @@ fn gauss_points<'b>(
 /// Removes mean gaps of a slave node that cover only a sliver beyond a convex vertex: their weight c_j is below 1e-2 of
 /// the largest weight of the node.
 ///
-/// At a vertex of the master both ends of the segment of a sliver are behind the line of the segment with the largest
-/// mean gap weight. At a vertex of the slave the face of a sliver leads away from the segment with the largest weight.
-/// The gap of a sliver is the gap of the node alone; the mean gap with the largest weight already keeps the faces apart
-/// there.
+/// At a vertex of the master both ends of the segment of a sliver are behind the line of the segment whose mean gap has
+/// the largest weight. At a vertex of the slave the face of a sliver leads away from the segment with the largest
+/// weight. The gap of a sliver is the gap of the node alone; the mean gap with the largest weight already keeps the
+/// faces apart there.
 fn leave_out_slivers(
     of_sides: &mut [SmallVec<[Mean; 2]>],
     slave: &SlaveSegments,
@@ -258,8 +258,8 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// For every face one entry for each run of the master, with the segments of the run that it
-    /// faces and its cells over them.
+    /// For every face one entry for each run of the master, with the segments of the run that the face faces, and the
+    /// cells of the face over these segments.
     fn all_faced(&self) -> Vec<FacedRun> {
         let mut all = Vec::new();
         for face in 0..self.slave.ends.len() {
@@ -374,9 +374,9 @@ impl<'a> Finder<'a> {
     }
 
     /// Whether a face was in front of a segment at the start, or in front of another segment from which it may slide on
-    /// to this one, or has penetrated the body through this segment. `p` and `q` are the projections of the ends of the
-    /// face. The result is false for the far side of a thin body or of a body behind it, for a face that has entered
-    /// through another segment, and for a face that lies on another segment.
+    /// to this segment, or has penetrated the body through this segment. `p` and `q` are the projections of the ends of
+    /// the face. The result is false for the far side of a thin body or of a body behind it, for a face that has
+    /// entered through another segment, and for a face that lies on another segment.
     fn is_in_front(&self, (face, segment): (usize, usize), [p, q]: [Projection; 2]) -> bool {
         // the gaps at the ends of the part of the face over the segment decide: beyond this part a face of a bent thin
         // body may be in front of the line of a segment on the other side
@@ -518,7 +518,7 @@ impl<'a> Finder<'a> {
 }
 
 impl SurfacePoint {
-    /// Positions of the point and of a and b.
+    /// Positions of the point and of the ends a and b of its segment.
     fn places(&self, at: impl Fn(usize) -> [f64; 2]) -> [[f64; 2]; 3] {
         let [x1, x2, a, b] = self.vertices.map(|vertex| vertex.place(&at));
         [between(x1, x2, self.eta), a, b]
@@ -531,8 +531,8 @@ impl SurfacePoint {
         ]
     }
 
-    /// Tilt of the force at a point that was over another segment i at the start; the positions are those of the point,
-    /// a and b at start and end.
+    /// Tilt of the force at a point that was over another segment i at the start; the given positions are those of the
+    /// point and of the ends a and b, at start and end of the increment.
     fn tilt(&self, [start, end]: [[[f64; 2]; 3]; 2], at_start: impl Fn(usize) -> [f64; 2]) -> Tilt {
         let over = |bulge: &Bulge, [s, a, b]: [[f64; 2]; 3]| {
             bulge.below(project(s, a, b)).raised(-self.rise)
@@ -850,7 +850,7 @@ mod tests {
         source_of([Bulge::FLAT; 2])
     }
 
-    /// The constraint of node 1 between straight faces and between curved ones; the curved slave faces bulge by a
+    /// The constraint of node 1 between straight faces and between curved faces; the curved slave faces bulge by a
     /// constant rise.
     fn sources() -> [MeanContact; 2] {
         [Bulge::FLAT, Bulge::steep(1.2)].map(|bulge| source_of([bulge; 2]))

@@ -17,7 +17,7 @@ use super::slave_segments::Vertex;
 pub struct PairTarget {
     /// The slave node, with the data that all kinds share.
     pub pair: Pair,
-    /// What the slave node must not penetrate.
+    /// Part of the master that the slave node must not penetrate.
     pub target: Target,
 }
 
@@ -34,7 +34,7 @@ pub struct Pair {
     pub is_of_master: bool,
 }
 
-/// What a slave node must not penetrate.
+/// Part of the master that a slave node must not penetrate.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Target {
     /// A segment of the master.
@@ -63,7 +63,7 @@ pub struct Segment {
 pub struct SegmentContact {
     /// The segment.
     pub segment: Segment,
-    /// The segment on which the node was closed at the start, if it has slid on from there to this one.
+    /// The segment on which the node was closed at the start, if the node has slid on from there to this segment.
     pub from: Option<Segment>,
 }
 
@@ -81,7 +81,7 @@ pub struct CornerContact {
 /// Points of slave faces whose mean gap must not become negative, and the segments of the master under them.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MeanContact {
-    /// Ends a and b of the segment under the point with the largest hat function; messages name it.
+    /// Ends a and b of the segment under the point with the largest hat function; messages name this segment.
     pub nearest: [usize; 2],
     /// The points.
     pub points: Recycled<SurfacePoint>,
@@ -128,7 +128,7 @@ pub struct DiscContact {
     pub segment: usize,
     /// The segment, arc or vertex under the centre of the disc.
     pub feature: MasterFeature,
-    /// The segment, arc or vertex under the centre at the start, if it was another one.
+    /// The segment, arc or vertex under the centre at the start, if it was another feature.
     pub from: Option<MasterFeature>,
 }
 
@@ -143,7 +143,7 @@ pub struct MasterFeature {
 
 impl Pair {
     /// The same pair in one configuration, the start of the increment (0) or its end (1), with the overlap that is
-    /// allowed there.
+    /// allowed then.
     fn in_one(self, configuration: usize) -> Self {
         Pair {
             allowed: [self.allowed[configuration]; 2],
@@ -299,7 +299,7 @@ impl CornerContact {
         self.before.ends[1]
     }
 
-    /// The corner in the form in which it is selected for a node.
+    /// The corner in the form in which the selection returns it.
     pub(super) fn corner(&self) -> Corner {
         Corner {
             next: self.behind.number,
@@ -366,14 +366,14 @@ impl MasterFeature {
     }
 }
 
-/// What a slave node must not penetrate: a segment, or the corner at its end.
+/// Part of the master that a slave node must not penetrate: a segment, or the corner at its end.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactTarget {
     /// Index of the segment in its contact.
     pub segment: usize,
     /// The corner at the segment's end b, if the node meets the corner.
     pub corner: Option<Corner>,
-    /// The segment on which the node was closed at the start, if it has slid on from there to this one.
+    /// The segment on which the node was closed at the start, if the node has slid on from there to this segment.
     pub from: Option<usize>,
 }
 
@@ -387,7 +387,7 @@ impl ContactTarget {
         }
     }
 
-    /// Sets the weight to the one that the same corner has in another iterate.
+    /// Sets the weight to the weight that the same corner has in another iterate.
     pub fn take_weight(&mut self, other: &ContactTarget) {
         if let (Some(corner), Some(now)) = (&mut self.corner, other.corner)
             && [self.segment, corner.next] == [other.segment, now.next]
@@ -421,5 +421,5 @@ impl Corner {
     }
 }
 
-/// The targets of a node; usually there is one.
+/// The targets of a node; usually there is one target.
 pub type ContactTargets = SmallVec<[ContactTarget; 4]>;

@@ -10,13 +10,13 @@
 pub(crate) const SHARP_TURN_COSINE: f64 = 0.5;
 /// Cosine of 30 degrees: beyond this turn in the reference configuration a surface has a corner.
 pub(crate) const CORNER_COSINE: f64 = 0.866;
-/// Sine of the turn in the reference configuration up to which a surface counts as straight there. This number also
-/// bounds four times the rise of a mid-side node (side lengths) up to which a side counts as straight.
+/// Sine of the turn in the reference configuration up to which a surface counts as straight. This number also bounds
+/// four times the rise of a mid-side node (side lengths) up to which a side counts as straight.
 pub(crate) const LEAST_TURN: f64 = 1e-4;
 /// Ratio of the turns at both ends of a segment beyond which the segment, a chord of a fine flank that meets a coarse
 /// fillet, does not belong to the curve at the end with the larger turn.
 pub(crate) const UNLIKE_TURNS: f64 = 4.0;
-/// Relative difference of the slopes at both ends of a curved face up to which they are equal but for round-off.
+/// Relative difference of the slopes at both ends of a curved face up to which the slopes count as equal.
 pub(crate) const EQUAL_SLOPES: f64 = 1e-9;
 /// Length of a segment, in lengths of a neighbour, beyond which it is straight: it is a side that ends in a fillet.
 pub(crate) const LONGEST_BENT: f64 = 3.0;
@@ -32,17 +32,17 @@ pub(crate) const INSIDE_ROUND_OFF: f64 = 1e-9;
 /// Length of the line that is followed into the body behind a node, in depths of the node: a node
 /// whose line leaves the body is nearer to the far side.
 pub(crate) const NEARER_HALF: f64 = 2.0;
-/// Entry of Bn over the unknowns below which equations keep a node on its segment, so it is
-/// round-off of weights and directions; the largest entry is of the order of 1.
+/// Entry of Bn over the unknowns below which equations keep a node on its segment, so the entry is round-off of weights
+/// and directions; the largest entry is of the order of 1.
 pub(crate) const TIED_ROW: f64 = 1e-9;
 /// Part of its reference length below which a segment has collapsed to a point and has no normal.
 pub(crate) const COLLAPSED_LENGTH: f64 = 1e-9;
 
 // Projection and search.
 
-/// Overrun of a projection beyond the ends of a segment at which it still counts as on the segment.
-/// The overrun covers round-off, and the sum of the tolerances of many increments for a node that
-/// sticks at the end of a surface.
+/// Overrun of a projection beyond the ends of a segment at which the projection still counts as on the segment. The
+/// overrun covers round-off, and the sum of the tolerances of many increments for a node that sticks at the end of a
+/// surface.
 pub(crate) const PROJECTION_BEYOND_ENDS: f64 = 1e-6;
 /// Distance up to which a node at rest pairs with a segment at rest, in mean segment lengths of the
 /// contact.
@@ -54,8 +54,8 @@ pub(crate) const NEAR_REACH: f64 = 0.25;
 /// Further distance within which a node may meet a segment after the next correction, in
 /// displacements of node and segment per increment.
 pub(crate) const NEAR_PER_MOTION: f64 = 2.0;
-/// Growth of the circle of an entity at rest, in mean segment lengths of the contact: it may move
-/// this far before its candidates are searched anew.
+/// Growth of the circle of an entity at rest, in mean segment lengths of the contact: the entity may move this far
+/// before its candidates are searched anew.
 pub(crate) const SEARCH_MARGIN: f64 = 0.5;
 /// Further growth of the circle of a moving entity, in displacements per increment: lists then last
 /// about two increments at constant velocity.
@@ -83,16 +83,16 @@ pub(crate) const GENTLE_SINE: f64 = 0.02;
 /// Sine of the largest turn at corners across which a node slides within an increment, and tangent of the largest tilt
 /// of the force on it.
 pub(crate) const SLIDING_SINE: f64 = 0.5;
-/// Distance beyond the end of a segment or arc, in its lengths, up to which a disc is still over
-/// it.
+/// Distance beyond the end of a segment or arc, in lengths of this feature, up to which a disc still counts as over the
+/// feature.
 pub(crate) const END_OF_FEATURE: f64 = 1e-9;
 /// Distance beyond the end of a segment from which on a node counts as having slid on to the next
 /// segment.
 pub(crate) const SLID: f64 = 1e-7;
 /// Distance along the faces from a convex corner, within which a node meets the corner itself.
 pub(crate) const CORNER_TIP: f64 = 1e-5;
-/// Overrun beyond the ends of a segment up to which a node keeps it, if the node has left it within
-/// an increment and found no other; the end of the increment decides whether the node has slid off.
+/// Overrun beyond the ends of a segment up to which a node keeps the segment, if the node has left it within an
+/// increment and found no other segment; the end of the increment decides whether the node has slid off.
 pub(crate) const KEPT_BEYOND_ENDS: f64 = 0.1;
 /// Overrun up to which a node keeps its segment once the passes have settled, even if another segment would constrain
 /// it. While passes go to and fro between two targets, `KEPT_BEYOND_ENDS` applies.
@@ -117,13 +117,13 @@ pub(crate) const POSITION_ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
 // Crossing and penetration.
 
-/// Round-off of a cross product, relative to the products of which it is the sum.
+/// Round-off of a cross product, relative to the products of which the cross product is the sum.
 pub(crate) const CROSS_ROUND_OFF: f64 = 32.0 * f64::EPSILON;
-/// Value of a cross or scalar product, relative to the products of which it is the sum, above which
-/// it is certainly positive.
+/// Value of a cross or scalar product, relative to the products that are added up, above which the value is certainly
+/// positive.
 pub(crate) const CLEAR_PRODUCT: f64 = 1e-9;
-/// Overrun beyond the ends of a moving segment at which a node still crosses it, so that no node
-/// slips between two segments by round-off.
+/// Overrun beyond the ends of a moving segment at which a node still crosses the segment, so that no node slips between
+/// two segments by round-off.
 pub(crate) const CROSSING_BEYOND_ENDS: f64 = 1e-9;
 /// Depth behind a segment that counts as round-off of positions.
 pub(crate) const DEPTH_ROUND_OFF: f64 = 1e-9;
@@ -138,10 +138,10 @@ pub(crate) const SEGMENT_END: f64 = 1e-6;
 
 // Contact from surface to surface.
 
-/// Depth of a corner up to which mean gaps alone keep it out (surface to surface), in lengths of the shortest face at
-/// it and of the other surface. The depth is above round-off, so no corner closes where the mean gaps are closed. A
-/// body must turn by about three times this number before the resultant on its face reaches the corner. With the depth
-/// 1e-5, walls of bricks need up to a third more passes.
+/// Depth of a corner up to which only mean gaps keep the corner out (surface to surface), in lengths of the shortest
+/// face at the corner and on the other surface. The depth is above round-off, so no corner closes where the mean gaps
+/// are closed. A body must turn by about three times this number before the resultant on its face reaches the corner.
+/// With the depth 1e-5, walls of bricks need up to a third more passes.
 pub(crate) const CORNER_DEPTH: f64 = 3e-5;
 /// Depth of a corner on its straight path in an increment that does not count as penetration, in the unit of
 /// `CORNER_DEPTH`: a corner that slides over a segment whose face turns reaches it.
@@ -156,7 +156,7 @@ pub(crate) const FACING_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Depth relative to another segment, as a part of the depth of a face behind its segment, up to which the face counts
 /// as having entered through that other segment.
 pub(crate) const NEARER_DEPTH: f64 = 0.5;
-/// Distance beyond the ends of a segment, in its lengths, up to which a face lies beside it.
+/// Distance beyond the ends of a segment, in lengths of the segment, up to which a face counts as beside the segment.
 pub(crate) const SIDE_BY_SIDE: f64 = 1.0;
 /// Smallest part of a slave face that is a cell.
 pub(crate) const LEAST_CELL: f64 = 1e-13;
@@ -180,6 +180,6 @@ pub(crate) const ADJUSTMENT_REACH: f64 = 1.0;
 /// Gap below which a node has met its target at an impact; the node joins the active pairs with
 /// this accuracy.
 pub(crate) const IMPACT_GAP: f64 = 1e-12;
-/// Cosine of the turn between a touched segment and another on to which the node slides without an impact. The turn
-/// belongs to [`GENTLE_SINE`], up to which one of the two segments is the node's only target.
+/// Cosine of the turn between a touched segment and another on to which the node slides without an impact. The angle
+/// corresponds to [`GENTLE_SINE`], up to which one of the two segments is the node's only target.
 pub(crate) const FACING_ALIKE_COSINE: f64 = 0.9998;

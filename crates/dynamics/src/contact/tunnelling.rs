@@ -320,7 +320,8 @@ fn turns_left(first: &Projection, second: &Projection) -> bool {
     cross(first.tangent, second.tangent) > 0.0
 }
 
-/// Largest depth by which a face of a slave surface and a segment cross at the displacements `u`; 0 if none cross:
+/// Largest depth by which a face of a slave surface and a segment cross at the displacements `u`; 0 if no face crosses
+/// a segment:
 ///
 /// ```text
 /// min(|h_p|, |h_q|)/|b - a|, min(|h_a|, |h_b|)/|q - p|   the smaller    eq. (10.6)
@@ -369,7 +370,7 @@ pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
 }
 
 /// Largest depth of a slave node inside a master, over the listed slave nodes of contact from surface to surface, whose
-/// gaps are means, at the displacements `u`; 0 if none is inside:
+/// gaps are means, at the displacements `u`; 0 if no node is inside:
 ///
 /// ```text
 /// |x_s - x_m|/L    eq. (10.7)

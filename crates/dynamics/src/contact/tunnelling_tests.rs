@@ -45,8 +45,7 @@ fn passes(from: [f64; 2], to: [f64; 2], contact: Contact) -> Option<[usize; 2]> 
     passes_of(true, from, to, contact)
 }
 
-/// Contact of the slave node: whether it was closed before, and on which segment it is closed at
-/// the end.
+/// Contact of the slave node: whether the node was closed before, and on which segment it is closed at the end.
 #[derive(Clone, Copy)]
 struct Contact {
     before: bool,

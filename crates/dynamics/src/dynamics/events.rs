@@ -141,8 +141,8 @@ impl FreeMotion<'_> {
         self.first_to_stay(&crossings(&motions, self.duration))
     }
 
-    /// Time at which a constraint outside the active ones, which ends with an overlap, has closed: its slave node has
-    /// moved behind the line of the segment.
+    /// Time at which an inactive constraint that ends with an overlap has closed: its slave node has moved behind the
+    /// line of the segment.
     fn overlap(&self, problem: &StepProblem, u0: &[f64], constraint: &Constraint) -> Option<f64> {
         let Some(lift) = constraint.lift_at_start() else {
             return constraint.closing_time([&self.path.v, &self.path.a], self.duration);
@@ -309,9 +309,9 @@ impl<'m> Subincrements<'_, 'm> {
         active.join_at_start(entry.pair, p.normal);
     }
 
-    /// Events of the nodes that enter bodies, and are not kept out of them, within the time tau of a motion. The motion
-    /// is that of a converged subincrement, or a prediction. The nodes that enter in a converged subincrement stay
-    /// inside to its end, or go through the body.
+    /// Events of the nodes that enter bodies, and are not kept out of these, within the time tau of a motion. The
+    /// motion is that of a converged subincrement, or a prediction. The nodes that enter in a converged subincrement
+    /// stay inside to its end, or go through the body.
     fn entries(
         &mut self,
         active: &ActiveConstraints,

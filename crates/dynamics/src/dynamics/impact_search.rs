@@ -1,5 +1,5 @@
-//! Time of an impact: the length tau of a subincrement at whose end the gap of an inactive pair is zero, eq. (6.4); it
-//! is bracketed and interpolated. See docs/theory/impacts.md, Impacts as events, item 3.
+//! Time of an impact: the length tau of a subincrement at whose end the gap of an inactive pair is zero, eq. (6.4); the
+//! length is bracketed and interpolated. See docs/theory/impacts.md, Impacts as events, item 3.
 
 use crate::contact::{Constraint, ConstraintKey};
 
@@ -29,8 +29,8 @@ impl EventTrial {
         }
     }
 
-    /// The mean gap of a constraint and the length to which it is relative; NaN if the trial does not have this mean
-    /// gap.
+    /// The mean gap of a constraint and the length to which this gap is relative; NaN if the trial does not have this
+    /// mean gap.
     pub fn mean(&self, key: ConstraintKey) -> [f64; 2] {
         let place = self.means.binary_search_by_key(&key, |(key, _)| *key);
         place.map_or([f64::NAN; 2], |place| self.means[place].1)
@@ -89,9 +89,9 @@ impl ImpactSearch {
         Some(quadratic.filter(is_inside).unwrap_or(linear))
     }
 
-    /// The length to try after the last one, `tau`: the expected length `root` of the impact. If `root` is not between
-    /// the trials before and after the impact, or the steps hardly decrease, the result is halfway between these
-    /// trials.
+    /// The length to try after the last length `tau`: the expected length `root` of the impact. If `root` is not
+    /// between the trials before and after the impact, or the steps hardly decrease, the result is halfway between
+    /// these trials.
     pub fn next(&mut self, tau: f64, root: Option<f64>) -> f64 {
         let (low, high) = (
             self.before.length,

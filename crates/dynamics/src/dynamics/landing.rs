@@ -14,7 +14,7 @@ use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint, ConstraintKey, Rows};
 
 /// Gives back the energy that the landings of a converged increment of length `dt` from `start` have removed, if the
-/// step asks for it (`LANDING=RETURN`).
+/// step asks for this return (`LANDING=RETURN`).
 ///
 /// # Errors
 /// Returns an error if a solve with K* fails.

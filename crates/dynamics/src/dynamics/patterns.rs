@@ -13,7 +13,8 @@ pub(crate) struct ReturnLoad {
     pub friction: Option<FrictionLoad>,
     /// Energy that is to be given back along the response.
     pub energy: f64,
-    /// Largest absolute value of the share; with it the impulse equals the impulse of the force in the increment.
+    /// Largest absolute value of the share, at which the impulse of the return equals the impulse of the force in the
+    /// increment.
     pub most: f64,
     /// Whether the share may be negative, so a force of the increment is taken back.
     pub pulls: bool,
@@ -184,7 +185,7 @@ impl RigidBodies {
         sums
     }
 
-    /// Adds a rigid motion to every free body so that it has exactly the momenta of its load,
+    /// Adds a rigid motion to every free body so that the body has exactly the momenta of its load,
     ///
     /// ```text
     /// w <- w + dv + domega e_z x r

@@ -15,7 +15,7 @@ const MOST_STEPS: usize = 10;
 const LAST_STEP: f64 = 1e-6;
 /// Overlap, in lengths of the segment, that is round-off of positions.
 const OVERLAP_ROUND_OFF: f64 = 1e-12;
-/// Round-off of displacements, and of the sums of a strain energy.
+/// Relative round-off of displacements, and of the sums of a strain energy.
 const SUM_ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 /// Brings nodes without mass that carry no force to rest at the end of an increment in which pairs have opened. The

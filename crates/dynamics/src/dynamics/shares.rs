@@ -8,8 +8,8 @@ use nalgebra::DMatrix;
 const LAST_CHANGE: f64 = 1e-13;
 /// Most sweeps.
 const MOST_SWEEPS: usize = 1000;
-/// Momentum along a pattern up to which it is round-off of a zero velocity, relative to the momentum that belongs to
-/// the energy to be given.
+/// Momentum along a pattern up to which this momentum is round-off of a zero velocity, relative to the momentum that
+/// belongs to the energy to be given.
 const REST_MOMENTUM: f64 = 1e-8;
 
 /// Signs of the shares: the signs of the momenta b along the patterns, so each share strengthens the motion along its
@@ -84,8 +84,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The patterns are random over 4 velocities: up to 4 independent ones, and also equal
-        /// ones.
+        /// The patterns are random over 4 velocities: up to 4 independent patterns, and also equal patterns.
         #[test]
         fn every_share_gives_its_own_energy_and_strengthens_the_motion(
             w in proptest::collection::vec(proptest::collection::vec(-1.0..1.0_f64, 4), 1..7),

@@ -176,7 +176,7 @@ impl<'m> Start<'m> {
         is_between.then_some((distance, segment))
     }
 
-    /// Projection of a node on a segment that it may face. The segment must not contain the node, and must be
+    /// Projection of a node on a segment that the node may face. The segment must not contain the node, and must be
     /// penetrated by less than its length; if node and segment belong to the same body, the node must be in front.
     fn faced(&self, slave: usize, i: usize) -> Option<Projection> {
         let [a, b] = self.contact.segments[i];
@@ -210,7 +210,7 @@ impl<'m> Start<'m> {
 /// Angle (rad) that covers the round-off of directions, and projections beyond the ends of a segment.
 const ANGLE_ROUND_OFF: f64 = 1e-5;
 
-/// Fan of the normals of some segments and of the corners behind them: all directions within some angle from a middle
+/// Fan of the normals of some segments and of the corners at their ends: all directions within some angle from a middle
 /// direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct NormalFan {
@@ -224,7 +224,7 @@ pub(super) struct NormalFan {
 }
 
 impl NormalFan {
-    /// The fan of a segment with the ends `[a, b]` and of the corner between it and the `next` one.
+    /// The fan of a segment with the ends `[a, b]` and of the corner to the `next` segment.
     pub fn new([a, b]: [[f64; 2]; 2], next: Option<[[f64; 2]; 2]>) -> Self {
         let of = |[a, b]: [[f64; 2]; 2]| {
             let normal = project(a, a, b).normal;
@@ -241,7 +241,7 @@ impl NormalFan {
         }
     }
 
-    /// The fan of both groups of segments.
+    /// The fan of two groups of segments together.
     pub fn join(self, other: Self) -> Self {
         let apart = turn(self.middle, other.middle);
         let low = f64::min(-self.half, apart - other.half);

@@ -150,8 +150,8 @@ fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnos
     }
 }
 
-/// Whether the nodes of a slave surface project on segments of the master and lie behind them. The function examines
-/// only a few nodes of the surface.
+/// Whether the nodes of a slave surface project on segments of the master and lie behind these segments. The function
+/// examines only a few nodes of the surface.
 fn lies_behind(model: &Model, slave: &Surface, master: &Surface) -> bool {
     let x = &model.mesh.coordinates;
     let (nodes, segments) = (slave.nodes(&model.mesh), master.segments(&model.mesh));

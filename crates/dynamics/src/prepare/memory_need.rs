@@ -6,7 +6,7 @@ use super::{InitialGap, PreparedModel};
 use crate::linear::factor_entries;
 use crate::model::{Bodies, Mesh};
 
-/// Bytes of the program before it reads a model.
+/// Bytes that the program needs before it reads a model.
 const PROGRAM: usize = 30 << 20;
 
 /// Bytes of a number or an index.

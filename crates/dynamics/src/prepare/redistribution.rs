@@ -20,8 +20,9 @@ const RINGS: [usize; 2] = [2, 3];
 /// A node with its weight in the velocity of another node.
 type Donor = (usize, f64);
 
-/// The redistribution P of the mass of contact surfaces: nodes without mass, whose velocities in the kinetic energy are
-/// those of their donors, v_i = sum w_ij v_j, eq. (2.17). The redistribution is empty with `CONTACT MASS=CONSISTENT`.
+/// The redistribution P of the mass of contact surfaces: nodes without mass, whose velocities in the kinetic energy
+/// follow from the velocities of their donors, v_i = sum w_ij v_j, eq. (2.17). The redistribution is empty with
+/// `CONTACT MASS=CONSISTENT`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Redistribution {
     /// Nodes without mass, increasing, with their donors, which have mass.
@@ -256,7 +257,7 @@ fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
 /// Least number of donors: three points determine an affine function.
 const LEAST_DONORS: usize = 3;
 /// Largest sum of |w|; a node whose weights have a larger sum is not extrapolated from its donors. Weights of regular
-/// meshes are ratios of small integers with sums up to 6; sums slightly above 6 do not occur there.
+/// meshes are ratios of small integers with sums up to 6; sums slightly above 6 do not occur in such meshes.
 const MOST_WEIGHT: f64 = 6.0 + 1e-6;
 /// Least width of the donors, relative to their length: narrower donors lie on a line up to the digits of their
 /// coordinates.
@@ -570,7 +571,7 @@ pub(crate) mod tests {
         model
     }
 
-    /// With two layers the donors lie on a line, and some nodes lie on this line too; with three layers the donors do
+    /// With two layers the donors lie on a line, and some nodes also lie on this line; with three layers the donors do
     /// not lie on a line.
     #[test]
     fn round_off_turns_and_places_do_not_decide_over_mass() {

@@ -27,7 +27,7 @@ macro_rules! codes {
                 }
             }
 
-            /// How the diagnostic usually comes about, or why it matters.
+            /// Usual cause of the diagnostic, or its consequence.
             pub fn cause(self) -> &'static str {
                 match self {
                     $(Code::$name => $cause,)*

@@ -1,5 +1,6 @@
-//! Diagnostics with severity, code, place, message, label and help, in which overlong echoes of the deck are cut. Also
-//! the collection of the diagnostics of one deck, with counts by severity, strictness, and order by place.
+//! Diagnostics with severity, code, place, message, label and help, in which overlong echoes of the deck are cut. The
+//! module also has the collection of the diagnostics of one deck, with counts by severity, strictness, and order by
+//! place.
 
 use super::code::Code;
 use std::collections::{BinaryHeap, HashMap, HashSet};
@@ -15,7 +16,7 @@ const LONGEST_TEXT: usize = 1000;
 pub enum Severity {
     /// An error: the deck is rejected.
     Error,
-    /// A warning: the deck is read, but differently from what it says.
+    /// A warning: the deck is read, but one of its statements is changed or left out.
     Warning,
     /// Worth knowing.
     Note,
@@ -163,7 +164,7 @@ pub struct Diagnostics {
     strictness: Strictness,
     items: Vec<Diagnostic>,
     counts: [usize; 3],
-    /// Places in the list of the diagnostics that are shown: the first ones of each severity.
+    /// Places in the list of the diagnostics that are shown: the first diagnostics of each severity.
     first: [BinaryHeap<Option<Span>>; 3],
     said: HashMap<Code, HashSet<String>>,
     /// Instance in which a line of a part was reported, by code and place.
@@ -197,7 +198,7 @@ impl Diagnostics {
         self.push(Diagnostic::error(code, span, message))
     }
 
-    /// Adds an error about a deck that cannot be opened, so there is no line to show.
+    /// Adds an error about a deck that cannot be opened, so the message shows no line.
     pub fn error_without_place(&mut self, code: Code, message: impl Into<String>) -> Added<'_> {
         self.push(Diagnostic::new(Severity::Error, code, None, message.into()))
     }
@@ -276,7 +277,7 @@ impl Diagnostics {
     }
 
     /// Whether a diagnostic would be shown if it were added as the last one. Suggestions that need time are made only
-    /// for diagnostics that would be shown; later diagnostics never make hidden ones visible.
+    /// for diagnostics that would be shown; later diagnostics never make hidden diagnostics visible.
     pub fn may_show(&self, diagnostic: &Diagnostic) -> bool {
         let first = &self.first[self.judge(diagnostic) as usize];
         first.len() < SHOWN || first.peek().is_some_and(|last| diagnostic.span < *last)
@@ -304,7 +305,7 @@ impl Diagnostics {
         self.counts[severity as usize]
     }
 
-    /// All diagnostics except those of one code.
+    /// All diagnostics except the diagnostics with one code.
     pub fn without(&self, code: Code) -> Diagnostics {
         let mut rest = Diagnostics::with_strictness(self.strictness);
         for item in self.items.iter().filter(|item| item.code != code) {

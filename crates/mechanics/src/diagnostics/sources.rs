@@ -94,7 +94,7 @@ pub struct EarlierDeck {
     pub settings: Vec<String>,
     /// Step and increment of the step from which the job continues.
     pub place: [usize; 2],
-    /// Whether the increment from which the job continues is the last one of its step.
+    /// Whether the increment from which the job continues is the last increment of its step.
     pub ends_step: bool,
     /// The deck that the earlier deck continues.
     pub before: Option<Box<EarlierDeck>>,
@@ -108,7 +108,7 @@ pub struct Sources {
     instances: Vec<(String, Span)>,
     /// Values, for example of parameters, that the reader of the deck sees in place of text in a line.
     replaced: BTreeMap<(u32, u32), Vec<Replaced>>,
-    /// Values of parameters that replace those of the deck.
+    /// Values of parameters that replace the values in the deck.
     settings: Vec<String>,
     /// The deck that the main deck continues.
     earlier: Option<EarlierDeck>,
@@ -133,8 +133,8 @@ impl Interrupt {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// If the end of reading has been requested, unwinds to the caller that requested it, which catches the panic. The
-    /// panic prints nothing.
+    /// If the end of reading has been requested, unwinds to the caller that requested the end, which catches the panic.
+    /// The panic prints nothing.
     pub fn end_if_asked(&self) {
         if self.is_asked() {
             std::panic::resume_unwind(Box::new(self.clone()));
@@ -165,8 +165,8 @@ impl Sources {
         Sources::default()
     }
 
-    /// Sources without files; `settings` are values `name=expression` of parameters in place of those in the deck, and
-    /// `earlier` is the deck that the main deck continues.
+    /// Sources without files; `settings` are values `name=expression` of parameters in place of the values in the deck,
+    /// and `earlier` is the deck that the main deck continues.
     pub fn with_settings(settings: &[String], earlier: Option<EarlierDeck>) -> Sources {
         Sources {
             settings: settings.to_vec(),
@@ -203,7 +203,7 @@ impl Sources {
         self.earlier.as_ref()
     }
 
-    /// Values of parameters that replace those of the deck.
+    /// Values of parameters that replace the values in the deck.
     pub fn settings(&self) -> &[String] {
         &self.settings
     }
@@ -234,8 +234,7 @@ impl Sources {
         FileId(self.files.len() as u32)
     }
 
-    /// Adds an instance of a part that is placed at `place`; returns the number by which spans
-    /// refer to it.
+    /// Adds an instance of a part that is placed at `place`; returns the number by which spans refer to this instance.
     pub fn add_instance(&mut self, name: &str, place: Span) -> u32 {
         self.instances.push((name.to_string(), place));
         self.instances.len() as u32

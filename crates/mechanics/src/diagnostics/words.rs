@@ -60,7 +60,7 @@ fn typing_errors(a: &[char], b: &[char], allowed: usize) -> Option<usize> {
 /// Largest number of names that a message lists.
 const LISTED: usize = 8;
 
-/// Text that lists the defined names, or the first few if there are many.
+/// Text that lists the defined names, or the first few names if there are many.
 pub fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> String {
     let names: Vec<&str> = names.collect();
     let plural = match kind {
@@ -77,7 +77,7 @@ pub fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> String {
     }
 }
 
-/// Width, in columns, of the screen and of text files for it.
+/// Width of the screen, and of text files for the screen (columns).
 pub const WIDTH: usize = 80;
 
 /// A text in lines; each line except the first is indented by `blanks` blanks, and the first keeps

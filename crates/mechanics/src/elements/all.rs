@@ -56,7 +56,7 @@ pub struct Elements {
     /// Reference positions of all nodes (length).
     coordinates: Vec<[f64; 2]>,
     dofs: usize,
-    /// Memory of the sweeps over tangents, kept between them and locked during a sweep.
+    /// Memory of the sweeps over tangents, kept from sweep to sweep and locked during a sweep.
     space: Mutex<Vec<f64>>,
 }
 
@@ -436,7 +436,7 @@ impl Elements {
 
     /// Calls `add(place, k)` with the tangent, or its positive part, of every element and spring that is `wanted`, and
     /// possibly of further elements. The matrix k is D x D, column by column, in the configuration of
-    /// [`Self::internal_force`]. The places of the elements are those of [`Self::connected`].
+    /// [`Self::internal_force`]. The places of the elements are their places in [`Self::connected`].
     pub fn for_each_tangent(
         &self,
         motion: Motion,
@@ -447,8 +447,8 @@ impl Elements {
         self.sweep_tangents(motion, part, &wanted, &mut add);
     }
 
-    /// [`Self::for_each_tangent`] without a type parameter for the caller, so that it is compiled only once for the
-    /// many kinds of elements.
+    /// [`Self::for_each_tangent`] without a type parameter for the caller, so that this function is compiled only once
+    /// for the many kinds of elements.
     fn sweep_tangents(
         &self,
         motion: Motion,

@@ -1,6 +1,7 @@
 //! Elements of one shape next to each other, and their kinematics: displacement gradients and strains at the
-//! integration points, in one configuration or between two (energy-momentum form). Also the sums over the integration
-//! points that give force and tangent. See docs/theory/elements.md and docs/numerics.md, Sweeps over elements.
+//! integration points, in one configuration or between two configurations (energy-momentum form). Also the sums over
+//! the integration points that give force and tangent. See docs/theory/elements.md and docs/numerics.md, Sweeps over
+//! elements.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -65,7 +66,7 @@ pub struct MovedBlock<'a, const N: usize, const P: usize, R> {
     /// The elements.
     pub block: &'a ElementBlock<N, P>,
     /// Inverse radius 1/R at the integration points (1/length). The radius is infinite in plane strain, so 1/R is zero;
-    /// elements of the plane do not read it.
+    /// elements of the plane do not read this value.
     pub over_radius: &'a [Lanes; P],
     /// Reference data of the formulation, except the data of the points.
     pub reference: &'a R,

@@ -43,13 +43,13 @@ pub struct TangentSweep<'a> {
     pub wanted: &'a (dyn Fn(usize) -> bool + Sync),
 }
 
-/// Elements that are swept together. A place is the number of an element among those that are swept together; otherwise
-/// elements are named by their indices.
+/// Elements that are swept together. A place is the number of an element among the elements that are swept together;
+/// otherwise elements are named by their indices.
 pub trait Chunk: Send + Sync {
     /// Elements (indices).
     fn elements(&self) -> &[usize];
 
-    /// Range of the internal variables of these elements among those of all elements.
+    /// Range of the internal variables of these elements among the variables of all elements.
     fn variables(&self) -> Range<usize>;
 
     /// Adds the internal forces of the elements at the end of a motion, or their energy-momentum form, to the sums. The

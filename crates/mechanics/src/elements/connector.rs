@@ -14,8 +14,8 @@ pub(super) type ConnectorVector = SmallVec<[f64; 4]>;
 /// Matrix with D x D entries, column by column.
 pub(super) type ConnectorMatrix = SmallVec<[f64; 16]>;
 
-/// Elongation of a connector, and its derivative with respect to the displacements of the nodes; along a line the two
-/// derivatives are opposite.
+/// Elongation of a connector, and its derivative with respect to the displacements of the nodes; for a connector along
+/// a line the derivatives at both nodes are opposite.
 struct Elongation {
     /// Elongation l - L (length).
     value: f64,

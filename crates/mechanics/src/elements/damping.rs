@@ -103,7 +103,7 @@ mod tests {
         Elements::new(&model)
     }
 
-    /// Elements of all laws in all formulations available for them.
+    /// Elements of all laws in all formulations available for these laws.
     fn all(damping: Damping) -> Vec<Elements> {
         let mean = ElementType {
             formulation: Formulation::MeanDilatation,

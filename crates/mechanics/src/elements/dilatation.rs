@@ -1,6 +1,6 @@
 //! Formulations with volume ratios of the element in place of the volume ratios of its points (CPE4H, CAX4H, CPE8H,
-//! CPE8RH, CAX8H, CAX8RH; Simo, Taylor & Pister 1985), for nearly incompressible materials. The stored energy is that
-//! of the modified deformation gradient, eq. (2.9):
+//! CPE8RH, CAX8H, CAX8RH; Simo, Taylor & Pister 1985), for nearly incompressible materials. The stored energy is the
+//! energy of the modified deformation gradient, eq. (2.9):
 //!
 //! ```text
 //! Fbar = (theta/J)^(1/n) F,  det Fbar = theta
@@ -12,9 +12,9 @@
 //!
 //! # Derivation
 //!
-//! It is theta = sum psi_k int psi_k J dOmega/V, with orthogonal functions psi_k whose squares have the volume V of the
-//! element as integral. The strain of the material is Ebar = r E + (r - 1)/2 I, with r = rho^(2/n) and rho = theta/J.
-//! The changes of the products in Ebar between two configurations are exact with mean quantities:
+//! The volume ratio is theta = sum psi_k int psi_k J dOmega/V, with orthogonal functions psi_k whose squares have the
+//! volume V of the element as integral. The strain of the material is Ebar = r E + (r - 1)/2 I, with r = rho^(2/n) and
+//! rho = theta/J. The changes of the products in Ebar between two configurations are exact with mean quantities:
 //!
 //! ```text
 //! dEbar = r_m dE + C_m/2 dr,  dr = g drho,  drho = (J_m dtheta - theta_m dJ)/(J0 J1),  dJ = K : dE

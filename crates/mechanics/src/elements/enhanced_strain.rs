@@ -367,8 +367,9 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         least(*first, derivatives, change, last)
     }
 
-    /// The own strains alpha at the end of an increment for which viscous stresses do no work on them, from the strains
-    /// of the displacements at start and end. The own strains alpha are NaN if Newton's method does not converge.
+    /// The own strains alpha at the end of an increment for which viscous stresses do no work on these own strains,
+    /// from the strains of the displacements at start and end. The own strains alpha are NaN if Newton's method does
+    /// not converge.
     fn of_rates(&self, compatible: &Compatible, end: &Measured) -> Alpha<A> {
         let last = largest(&compatible.change) * LAST_STEP
             + largest(&compatible.end) * f64::EPSILON

@@ -83,7 +83,7 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     fn reference<S: IntegratedShape<N, P>>(placed: &PlacedBlock<N, P>) -> Self::Reference;
 
     /// Visits every point p with its deformation and stress. The visit is the only evaluation of the material;
-    /// everything else is computed from it. Returns whether det F is positive at all points.
+    /// all other quantities are computed from the visited states. Returns whether det F is positive at all points.
     fn for_each_state<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
         law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),

@@ -59,7 +59,7 @@ impl<const M: usize> Amplitudes<M> {
 }
 
 impl<const M: usize> HourglassPotential<M> {
-    /// Potential with a stiffness Kh; for metals it has the plastic amplitudes y_p.
+    /// Potential with a stiffness Kh; for metals the potential has the plastic amplitudes y_p.
     pub fn new(
         stiffness: ModeStiffness<M>,
         metals: &[Option<Metal>; LANES],

@@ -81,7 +81,7 @@ impl Elements {
 pub struct ElementNodes {
     /// Elements (indices).
     elements: Vec<usize>,
-    /// Indices of the nodes, increasing, each with the places of its values among those of all elements.
+    /// Indices of the nodes, increasing, each with the places of its values among the values of all elements.
     places: BTreeMap<usize, Vec<usize>>,
 }
 

@@ -77,8 +77,8 @@ impl Tensor {
         }
     }
 
-    /// Symmetric part (A + A^T)/2. This form avoids the difference between two symmetric tensors, which would have the
-    /// round-off of their product.
+    /// Symmetric part (A + A^T)/2. The formula avoids the difference between two symmetric tensors, which would have
+    /// the round-off of their product.
     #[inline(always)]
     fn symmetric(&self) -> SymmetricLanes {
         let [[xx, xy], [yx, yy]] = self.section;

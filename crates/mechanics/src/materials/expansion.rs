@@ -29,7 +29,8 @@ const MAX_POINTS: usize = 9;
 pub struct Expansion {
     /// Temperature T0 from which the mean expansion alpha is measured.
     pub zero: f64,
-    /// Increasing temperatures, each with alpha (1/temperature); alpha is linear between them and constant outside.
+    /// Increasing temperatures, each with alpha (1/temperature); alpha is linear between these temperatures and
+    /// constant outside.
     pub table: Vec<[f64; 2]>,
 }
 

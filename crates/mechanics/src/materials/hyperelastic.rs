@@ -36,7 +36,8 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
     fn energy(&self, e: &Symmetric<T>) -> T;
 
     /// Change of the stored energy, W(E1) - W(E0), with a round-off that is relative to E1 - E0 (force/length^2). The
-    /// difference must not be computed from two energies: then it would have no correct digits if E1 is near E0.
+    /// change must not be computed as a difference of two energies, which would have no correct digits if E1 is near
+    /// E0.
     fn energy_change(&self, change: &StrainChange<T>) -> T;
 
     /// Second Piola-Kirchhoff stress S = dW/dE, eq. (2.3) (force/length^2).
@@ -384,8 +385,8 @@ mod tests {
         }
     }
 
-    /// Stress and tangent of several elements in the plane are the same as those of single elements
-    /// with all components.
+    /// Stress and tangent of several elements in the plane are the same as the results for single elements with all
+    /// components.
     #[test]
     fn in_lanes_and_without_hoop_laws_are_the_same() {
         use crate::materials::{Elastic, Lanes, OneByOne, StressAtPoints};

@@ -120,8 +120,8 @@ const NEAR: f64 = 0.1;
 /// Number of terms of the series of [`second_difference`]; the last term is round-off.
 const TERMS: i32 = 17;
 
-/// Divided difference ln[x_1, x_1, x_2] = -(1 - ln(1 + d)/d)/(d x_1²) with d = (x_2 - x_1)/x_1; near d = 0 it is the
-/// series -sum (-d)^k/(k + 2).
+/// Divided difference ln[x_1, x_1, x_2] = -(1 - ln(1 + d)/d)/(d x_1²) with d = (x_2 - x_1)/x_1; near d = 0 the
+/// difference is the series -sum (-d)^k/(k + 2).
 fn second_difference(y1: f64, y2: f64) -> f64 {
     let x1 = 1.0 + y1;
     let d = (y2 - y1) / x1;

@@ -33,7 +33,7 @@ pub enum Curve {
     /// Smooth steps between points (time, value), with zero rate and zero second derivative at each
     /// point.
     SmoothStep(Vec<(f64, f64)>),
-    /// `base` up to the time `start`, and `base + signal(t - start)` from there on.
+    /// `base` up to the time `start`, and `base + signal(t - start)` from this time on.
     Signal {
         /// Time at which the signal begins.
         start: f64,
@@ -83,7 +83,8 @@ impl Amplitude {
         self.value_and_rate(t)[1]
     }
 
-    /// Derivative of the amplitude at `t`; where it jumps, the result is the derivative in the interval after the jump.
+    /// Derivative of the amplitude at `t`; where the derivative jumps, the result is the derivative in the interval
+    /// after the jump.
     pub fn rate_after(&self, t: f64) -> f64 {
         match &self.curve {
             Curve::Linear(points) => rate_after_point(points, t, |x| [x, 1.0]),
@@ -319,7 +320,7 @@ fn in_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f
     [value, (q.1 - p.1) / (q.0 - p.0) * slope]
 }
 
-/// Slope of a table in the interval that contains `t` or begins at it; zero before the first point and from the last
+/// Slope of a table in the interval that contains `t` or begins at `t`; zero before the first point and from the last
 /// point on.
 fn rate_after_point(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> f64 {
     let t = at_point(points, t);

@@ -25,7 +25,7 @@ pub struct Interaction {
     pub heat: Option<Heat>,
 }
 
-/// Part of the work of friction that becomes heat, and the surfaces that it heats.
+/// Part of the work of friction that becomes heat, and the surfaces that this heat warms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Heat {
     /// Part of the work that becomes heat.
@@ -96,7 +96,7 @@ pub struct Contact {
 pub enum Smoothing {
     /// Straight faces, as meshed.
     Straight,
-    /// Curved faces, from the turns of the reference configuration; some of them are circles about
+    /// Curved faces, whose shape follows from the turns of the reference configuration; some faces lie on circles about
     /// given centres.
     Curved(Vec<Circle>),
 }
@@ -120,11 +120,11 @@ pub struct Circle {
 /// strain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Adjust {
-    /// Nodes near the surface of the master body, inside or above it.
+    /// Nodes near the surface of the master body, inside or above this surface.
     Within(Reach),
     /// Nodes of the node set with this index.
     Nodes(usize),
-    /// Nodes near the surface, which are moved to a clearance above it (length).
+    /// Nodes near the surface, which are moved to a clearance above the surface (length).
     Clearance(f64),
 }
 
@@ -151,7 +151,7 @@ impl Adjust {
 }
 
 impl Contact {
-    /// A contact of two surfaces in which all slave nodes take part and none is moved.
+    /// A contact of two surfaces in which all slave nodes take part and no node is moved.
     pub fn new([slave, master]: [usize; 2], interaction: Interaction) -> Self {
         Contact {
             slave,
@@ -283,15 +283,15 @@ impl Surface {
     }
 }
 
-/// Two nodes at one place that move together while their bodies may rotate (`*MPC`, PIN); at least one of them belongs
-/// to a rigid body.
+/// Two nodes at one place that move together while their bodies may rotate (`*MPC`, PIN); at least one of the two nodes
+/// belongs to a rigid body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Hinge {
     /// The nodes.
     pub nodes: [usize; 2],
 }
 
-/// A dof that follows others at all times: u_dof = sum c_k u_k, eq. (3.8).
+/// A dof that follows other dofs at all times: u_dof = sum c_k u_k, eq. (3.8).
 ///
 /// The dofs u_k are free or prescribed; no u_k follows other dofs.
 #[derive(Debug, Clone, PartialEq)]
@@ -334,7 +334,7 @@ pub struct RigidBody {
     pub masses: Vec<(usize, f64)>,
     /// Moment of inertia in addition to the moment of inertia of elements and masses (mass length^2).
     pub rotary_inertia: f64,
-    /// Whether any step leaves the body free in some direction, or turns it.
+    /// Whether any step leaves the body free in some direction, or turns the body.
     pub turns: bool,
 }
 

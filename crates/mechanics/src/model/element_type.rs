@@ -11,7 +11,7 @@ use super::Plane;
 pub struct ElementType {
     /// Shape and interpolation.
     pub shape: Shape,
-    /// How strains are computed from the displacements.
+    /// Formulation: the way in which strains are computed from the displacements.
     pub formulation: Formulation,
     /// Plane stress, plane strain or body of revolution.
     pub plane: Plane,
@@ -30,7 +30,7 @@ pub enum Shape {
     Quad8,
 }
 
-/// How the strains of an element are computed from its displacements.
+/// Way in which the strains of an element are computed from its displacements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Formulation {
     /// Strains of the displacements at every integration point.
@@ -136,7 +136,7 @@ macro_rules! element_types {
             /// All types that a deck may name.
             pub const NAMED: [Self; NAMES.len()] = [$(Self::$name),*];
 
-            /// Numbers and names in the form in which result files list them.
+            /// Numbers and names of the types, as result files list these.
             pub const NUMBERS: &str =
                 concat!($(", ", stringify!($number), " ", stringify!($name)),*).split_at(2).1;
         }

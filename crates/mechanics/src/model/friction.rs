@@ -23,7 +23,7 @@ pub enum FrictionLaw {
         decay: f64,
     },
     /// Curves with increasing pressures; values are linear between the points of a curve and between curves, and
-    /// constant beyond the last ones.
+    /// constant beyond the first and last points and curves.
     Table(Vec<FrictionCurve>),
     /// Closed pairs never slip.
     Rough,

@@ -53,8 +53,8 @@ impl Mesh {
         parent
     }
 
-    /// Whether the bodies are bodies of revolution around the axis x = 0; either all elements are of this kind, or
-    /// none.
+    /// Whether the bodies are bodies of revolution around the axis x = 0; either all elements are rings, or no element
+    /// is a ring.
     pub fn is_axisymmetric(&self) -> bool {
         let first = self.elements.first();
         first.is_some_and(|element| element.element_type.is_ring())
@@ -284,11 +284,11 @@ pub struct Element {
     pub element_type: ElementType,
     /// Node indices, as many as the type has: the corners counter-clockwise, then the mid-side nodes.
     pub nodes: Nodes,
-    /// Index into `Model::sections`; [`NO_SECTION`] until it is known.
+    /// Index into `Model::sections`; [`NO_SECTION`] until the section is known.
     pub section: usize,
 }
 
-/// Section of an element that has none yet.
+/// Section index of an element that has no section yet.
 pub const NO_SECTION: usize = usize::MAX;
 
 impl Element {

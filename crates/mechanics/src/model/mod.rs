@@ -156,7 +156,7 @@ impl Model {
     }
 
     /// Whether supports of a step prescribe the same motion along an axis for two nodes, on bodies that neither this
-    /// step nor an earlier one turns. If the result is true, a hinge between the two nodes has no effect along the
+    /// step nor an earlier step turns. If the result is true, a hinge between the two nodes has no effect along the
     /// axis.
     pub fn are_held_alike(&self, step: &Step, nodes: [usize; 2], axis: usize) -> bool {
         let has_not_turned = |body: &&RigidBody| {
@@ -383,7 +383,7 @@ impl Material {
     }
 }
 
-/// Edge lengths of the elements, and times of waves along them.
+/// Edge lengths of the elements, and times of waves along these edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EdgeScales {
     /// The shortest edge (length); infinite without elements.
@@ -395,7 +395,7 @@ pub struct EdgeScales {
 }
 
 impl EdgeScales {
-    /// Measures the elements of a mesh; some of them may have no section.
+    /// Measures the elements of a mesh; some elements may have no section.
     pub fn new(mesh: &Mesh, sections: &[Section], materials: &[Material]) -> Self {
         // elements of a section in each plane; at last those without section
         let planes = [Plane::Stress, Plane::Strain, Plane::Revolution];
@@ -431,6 +431,6 @@ impl EdgeScales {
 pub struct Section {
     /// Index into `Model::materials`.
     pub material: usize,
-    /// Thickness t (length); it has no meaning for bodies of revolution.
+    /// Thickness t (length); the thickness has no meaning for bodies of revolution.
     pub thickness: f64,
 }

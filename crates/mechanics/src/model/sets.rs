@@ -76,7 +76,7 @@ impl NodalVariable {
         (NodalVariable::PlasticStrain, "PEEQ"),
     ];
 
-    /// The variable with a name in a deck; components such as `S11` are names too.
+    /// The variable with a name in a deck; names of components such as `S11` are also allowed.
     pub fn named(name: &str) -> Option<Self> {
         let whole = match name.trim_end_matches(|c: char| c.is_ascii_digit()) {
             "MISES" => "S",

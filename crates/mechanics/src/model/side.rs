@@ -1,4 +1,4 @@
-//! Sides of elements: their nodes, their shape functions, and the forces on them. See docs/theory/elements.md.
+//! Sides of elements: their nodes, their shape functions, and the forces on sides. See docs/theory/elements.md.
 //!
 //! A side is not a contact segment: a segment is a straight line between two neighbouring nodes, and a side has one or
 //! two segments.

@@ -8,7 +8,7 @@ use crate::linear::SolverChoice;
 /// One step with everything that acts in the step, whether given in this step or in an earlier step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// Name of the step, if it has one.
+    /// Name of the step, if the deck gives a name.
     pub name: Option<String>,
     /// Its procedure.
     pub procedure: Procedure,
@@ -60,7 +60,7 @@ impl Step {
         }
     }
 
-    /// The motion of a dof, if it is prescribed.
+    /// The prescribed motion of a dof; `None` if the dof is free.
     pub fn motion_of(&self, dof: usize) -> Option<SupportMotion> {
         let place = (self.supports).binary_search_by_key(&dof, |support| support.dof);
         place.ok().map(|index| self.supports[index].motion)
@@ -72,7 +72,7 @@ impl Step {
 pub struct ContactChanges {
     /// Contacts that do not act (indices, increasing).
     pub removed: Vec<usize>,
-    /// Contacts whose friction differs from that of their interaction, by increasing contacts.
+    /// Contacts whose friction differs from the friction of their interaction, by increasing contacts.
     pub friction: Vec<FrictionChange>,
 }
 
@@ -149,7 +149,7 @@ pub struct Increments {
 }
 
 impl Increments {
-    /// Increments of one length over a step (DIRECT); cutbacks may shorten them without limit.
+    /// Increments of one length over a step (DIRECT); cutbacks may shorten these increments without limit.
     pub fn fixed(dt: f64, period: f64) -> Self {
         Increments {
             dt,
@@ -222,7 +222,7 @@ impl<T> Load<T> {
         matches!(self.variation, Variation::Ramp { .. })
     }
 
-    /// Magnitudes at the start and at the end of the step; `None` if an amplitude gives them.
+    /// Magnitudes at the start and at the end of the step; `None` if an amplitude gives the magnitudes.
     pub fn ends(&self) -> Option<[f64; 2]> {
         match self.variation {
             Variation::Constant => Some([self.magnitude; 2]),

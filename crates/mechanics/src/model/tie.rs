@@ -39,8 +39,8 @@ pub struct TiedSide {
     pub lines: SmallVec<[TiedLine; 2]>,
 }
 
-/// A straight line of the slave surface, with integrals over it. The line has one integral for each of its ends j, with
-/// the dual functions psi_j.
+/// A straight line of the slave surface, with integrals over the line. The line has one integral for each of its ends
+/// j, with the dual functions psi_j.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TiedLine {
     /// Weights D_j = sum w_q N_j of the ends: lengths, or in bodies of revolution areas divided by 2 pi.

@@ -17,7 +17,7 @@ const DISTRIBUTED: u32 = u32::MAX;
 /// Estimated number of rows of a column for each element of its unknown, in a mesh of quadrilaterals or triangles.
 const ROWS: usize = 5;
 
-/// Number of dofs of an element up to which a list of them needs no allocated memory.
+/// Number of dofs of an element up to which a list of its dofs needs no allocated memory.
 const DOFS: usize = 16;
 
 /// A symmetric sparse matrix over unknowns, assembled from element matrices over dofs. Both
@@ -33,8 +33,8 @@ pub struct Assembled {
 /// Positions at which the entries of the element matrices are added.
 #[derive(Debug)]
 struct EntryPositions {
-    /// Position among the values of every entry of the element matrices, column by column; only of every second entry
-    /// if the entry after it always goes to the next value.
+    /// Position among the values for every entry of the element matrices, column by column. If pairs of entries always
+    /// go to consecutive values, only the position for the first entry of each pair.
     positions: Vec<u32>,
     /// Start of each element in `positions`, and the end of the last one.
     starts: Vec<usize>,
@@ -395,9 +395,9 @@ impl AddedBlocks {
         self.entries.is_empty()
     }
 
-    /// Places (column, row) of these blocks and of earlier ones, in increasing order. Keeping earlier places keeps the
-    /// pattern of the sum, and with it its symbolic analysis. Earlier places are forgotten if there are many more of
-    /// them than entries.
+    /// Places (column, row) of the entries of the present and of earlier blocks, in increasing order. With the earlier
+    /// places kept, the pattern of the sum stays the same, and so does its symbolic analysis. Earlier places are
+    /// forgotten if there are many more places than entries.
     pub(super) fn places(&self, earlier: &[(usize, usize)]) -> Vec<(usize, usize)> {
         let forgets = earlier.len() > MOST_PLACES * self.entries.len();
         let mut places = if forgets {
@@ -421,7 +421,7 @@ pub(super) struct BlockSum {
     places: Vec<(usize, usize)>,
     /// Positions of these places among the values.
     positions: Vec<usize>,
-    /// Runs of values of the matrix that are contiguous in the sum, too.
+    /// Runs of values of the matrix that are also contiguous in the sum.
     runs: Vec<ConsecutiveValues>,
 }
 

@@ -23,7 +23,7 @@ pub struct Transformation {
     starts: Arc<[usize]>,
     /// Unknown and coefficient of every term, row by row; copies share them until they change.
     terms: Arc<[(usize, f64)]>,
-    /// Coefficients of the derivatives, if they differ from those of the terms.
+    /// Coefficients of the derivatives, if they differ from the coefficients of the terms.
     derivatives: Option<Vec<f64>>,
     /// Ranges of the dofs of the unknowns, if every row is empty or a row of the identity matrix.
     selected: Option<Vec<Range<usize>>>,
@@ -109,7 +109,7 @@ impl Transformation {
         range.map(move |i| (self.terms[i].0, of.map_or(self.terms[i].1, |of| of[i])))
     }
 
-    /// Sets the coefficients of the last term of a dof: the one by which forces act, and the derivative.
+    /// Sets the coefficients of the last term of a dof: the coefficient by which forces act, and the derivative.
     pub fn set_last(&mut self, dof: usize, [force, derivative]: [f64; 2]) {
         let Some(last) = self.starts[dof + 1].checked_sub(1) else {
             return;
@@ -286,35 +286,35 @@ impl Rotation {
         self.nodes.is_empty()
     }
 
-    /// v <- R v, `v` over all dofs.
+    /// Replaces the vector `v` over all dofs by R v.
     pub fn turn(&self, v: &mut [f64]) {
         for (&[cos, sin], v) in self.nodes.iter().zip(v.chunks_exact_mut(2)) {
             rotate([cos, sin], v);
         }
     }
 
-    /// v <- R^T v, `v` over all dofs.
+    /// Replaces the vector `v` over all dofs by R^T v.
     pub fn turn_back(&self, v: &mut [f64]) {
         for (&[cos, sin], v) in self.nodes.iter().zip(v.chunks_exact_mut(2)) {
             rotate([cos, -sin], v);
         }
     }
 
-    /// v <- R v of one node.
+    /// Replaces the vector v of one node by R v.
     pub fn turn_node(&self, node: usize, v: &mut [f64; 2]) {
         if let Some(&[cos, sin]) = self.nodes.get(node) {
             rotate([cos, sin], v);
         }
     }
 
-    /// v <- R^T v of one node.
+    /// Replaces the vector v of one node by R^T v.
     pub fn turn_node_back(&self, node: usize, v: &mut [f64; 2]) {
         if let Some(&[cos, sin]) = self.nodes.get(node) {
             rotate([cos, -sin], v);
         }
     }
 
-    /// row <- row R, where `row` is over the given dofs: x and y of each node after the other.
+    /// Replaces `row` by row R; the row is over the given dofs: x and y of each node after the other.
     pub fn turn_row(&self, dofs: &[usize], row: &mut [f64]) {
         for (dofs, entries) in dofs.chunks_exact(2).zip(row.chunks_exact_mut(2)) {
             if let Some(&[cos, sin]) = self.nodes.get(dofs[0] / 2) {

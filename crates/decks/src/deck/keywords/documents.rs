@@ -110,7 +110,8 @@ An error stops the run before it begins. These are errors:
 
 ";
 
-/// The row of a keyword in the tables at the beginning of the reference: its levels and the first sentence about it.
+/// The row of a keyword in the tables at the beginning of the reference: the levels of the keyword and the first
+/// sentence about it.
 fn push_entry(text: &mut String, keyword: &Keyword) {
     let sentence = keyword
         .text

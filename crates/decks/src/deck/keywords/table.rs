@@ -17,10 +17,10 @@
 //! ```
 //!
 //! The levels are `part` (which includes instances), `assembly`, `model`, `step` and `first-step`; `anywhere` means all
-//! of them. In decks without parts, cards of parts and the assembly stand at the level of the model. A card of the
-//! level `part` that stands in a step belongs to the model, and so does a card of the level `model` in the first step.
-//! `under *X` means the block of another keyword; `structure` is the place of the keywords that begin and end parts,
-//! instances and the assembly.
+//! levels. In decks without parts, cards of parts and the assembly stand at the level of the model. A card of the level
+//! `part` that stands in a step belongs to the model, and so does a card of the level `model` in the first step. `under
+//! *X` means the block of another keyword; `structure` is the place of the keywords that begin and end parts, instances
+//! and the assembly.
 //!
 //! A field whose own name is a kind of object, alone or behind `or`, holds the name of such an object: `surface`, `node
 //! or node set`. A field with another name has the kind of its object in brackets, as parameters have: `slave
@@ -158,7 +158,7 @@ fn with_status(text: &'static str) -> (&'static str, Status) {
     found.unwrap_or((text, Status::Read))
 }
 
-/// The parameters of an entry; `known` are the keywords of the entries before it.
+/// The parameters of an entry; `known` are the keywords of the entries before this entry.
 fn parameters(lines: &[&'static str], known: &[Keyword]) -> &'static [Parameter] {
     let mut all: Vec<Parameter> = Vec::new();
     for (index, line) in lines.iter().enumerate() {

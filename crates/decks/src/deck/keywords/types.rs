@@ -100,7 +100,7 @@ pub enum Data {
     Text,
     /// The data lines are words that the program does not read.
     Words,
-    /// The data lines may hold anything; the program does not read them.
+    /// The data lines may hold anything; the program does not read these lines.
     Skipped,
 }
 
@@ -207,7 +207,7 @@ impl Kind {
 pub struct Keyword {
     /// The keyword without its star, with blanks.
     pub name: &'static str,
-    /// What the program does with the keyword.
+    /// Treatment of the keyword by the program.
     pub status: Status,
     /// Where the keyword may stand.
     pub scope: Scope,
@@ -263,7 +263,7 @@ impl Keyword {
     }
 }
 
-/// What the program does with a keyword, a parameter or a value.
+/// Treatment of a keyword, a parameter or a value by the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
     /// The program reads and obeys the keyword, parameter or value.
@@ -296,7 +296,7 @@ pub enum Takes {
 pub struct Value {
     /// The word, with blanks.
     pub name: &'static str,
-    /// What the program does with the word.
+    /// Treatment of the word by the program.
     pub status: Status,
     /// One sentence about the word; empty where the word explains itself.
     pub text: &'static str,
@@ -320,7 +320,7 @@ pub struct Parameter {
     pub takes: Takes,
     /// Quantity that a value of the parameter holds.
     pub holds: Quantity,
-    /// What the program does with the parameter.
+    /// Treatment of the parameter by the program.
     pub status: Status,
     /// One sentence.
     pub text: &'static str,

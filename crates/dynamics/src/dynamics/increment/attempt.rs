@@ -229,7 +229,7 @@ impl DynamicAttempt<'_, '_> {
         Ok(closing)
     }
 
-    /// Factorises K* anew if the rules demand it, else turns its factors with the bodies.
+    /// Factorises K* anew if the rules for factors demand this, else turns the factors of K* with the bodies.
     fn refresh(
         &mut self,
         factors: &mut Refactorization,

@@ -21,7 +21,7 @@ const TIPS: usize = 3;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactForces {
     /// The constraints of the iterate, with increasing keys. At the end of an increment the
-    /// constraints of far nodes, which are open, follow the others.
+    /// constraints of far nodes, which are open, follow the other constraints.
     pub constraints: Vec<Constraint>,
     /// The closed constraints, as pairs.
     pub closed: ClosedPairs,
@@ -57,7 +57,7 @@ impl ContactForces {
         }
     }
 
-    /// Replaces the constraints by those of the next iterate, with the available forces, and returns the old
+    /// Replaces the constraints by the constraints of the next iterate, with the available forces, and returns the old
     /// constraints in `constraints`.
     pub fn relinearize(&mut self, constraints: &mut Vec<Constraint>) {
         std::mem::swap(&mut self.constraints, constraints);
@@ -68,7 +68,7 @@ impl ContactForces {
         self.acting().count() == self.closed.len()
     }
 
-    /// Whether the last pass closed the same pairs as the one before it.
+    /// Whether the last pass closed the same pairs as the pass before it.
     pub fn are_of_same_pairs(&self) -> bool {
         self.closed.keys().eq(self.choice.before.keys())
     }
@@ -225,7 +225,7 @@ impl ContactForces {
     }
 }
 
-/// Out of entries for all constraints, the entries of those that are in the problem.
+/// Entries of the constraints in the problem, selected from entries of all constraints.
 fn chosen<'c, 'i, T>(
     all: &'c [T],
     inside: &'i [bool],

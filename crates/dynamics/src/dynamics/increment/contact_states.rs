@@ -18,13 +18,13 @@ pub(crate) struct ContactStates {
     pub found: Vec<Constraint>,
     /// Constraints of the iterate that do not count (inactive pairs).
     pub left_out: Vec<Constraint>,
-    /// Whether the coefficient of friction of a pair differs from that of the last pass.
+    /// Whether the coefficient of friction of a pair differs from its coefficient in the last pass.
     pub friction_moves: bool,
     /// The slave nodes whose constraints the passes find.
     choice: SlaveChoice,
 }
 
-/// Relative change of a coefficient of friction from which on it counts as changed.
+/// Relative change of a coefficient of friction from which on the coefficient counts as changed.
 const MOVES: f64 = 1e-9;
 
 impl ContactStates {
@@ -113,8 +113,8 @@ impl ContactStates {
         stay_open
     }
 
-    /// Sets the coefficients of friction to those of the law at the slips and forces of the last solution, at the end
-    /// of an increment.
+    /// Sets the coefficients of friction to the values of the law at the slips and forces of the last solution, at the
+    /// end of an increment.
     pub fn take_own_friction(&mut self, problem: &StepProblem, start: &State, interval: Interval) {
         let ContactForces {
             constraints,
@@ -130,19 +130,18 @@ impl ContactStates {
         (problem.frictions).give(problem.coordinates, before, constraints);
     }
 
-    /// Replaces the constraints by those of the iterate, with the available forces.
+    /// Replaces the constraints by the constraints of the iterate, with the available forces.
     pub fn relinearize(&mut self) {
         self.forces.relinearize(&mut self.found);
     }
 
-    /// Whether the pairs that the last pass closed are those with impulses, and these impulses are
-    /// exact.
+    /// Whether the pairs that the last pass closed are the pairs with impulses, and whether these impulses are exact.
     pub fn rest(&mut self, problem: &StepProblem) -> bool {
         self.impulses.rest(problem, &self.forces)
     }
 
-    /// Adds the inactive constraints to the active ones at the end of an increment. A free node at or past a corner
-    /// gets no constraint there if the corner lies behind the line of the segment from which the node came.
+    /// Adds the inactive constraints to the active constraints at the end of an increment. A free node at or past a
+    /// corner gets no constraint there if the corner lies behind the line of the segment from which the node came.
     pub fn take_left_out(&mut self, problem: &StepProblem, u: &[f64]) {
         let at = problem.positions(u);
         let left_out = self.left_out.drain(..);

@@ -28,13 +28,13 @@ pub(crate) struct Guess {
     /// Forces of every constraint, if known: of several solutions, the solution near these forces is sought.
     pub forces: Option<Vec<[f64; 2]>>,
     /// Weight of the nearness of the answer to the known forces; without a weight the nearness
-    /// counts only if there is no answer otherwise.
+    /// counts only if the problem has no answer without it.
     pub weight: Option<f64>,
 }
 
 impl Guess {
-    /// Sets states and forces to those of the pairs closed `before`; with a weight the answer is sought near these
-    /// forces.
+    /// Sets states and forces to the states and forces of the pairs closed `before`; with a weight the answer is sought
+    /// near these forces.
     pub fn take_over(
         &mut self,
         constraints: &[&Constraint],
@@ -98,7 +98,7 @@ impl System<'_> {
         }
     }
 
-    /// Solves with the derivative rows, else with the force rows.
+    /// Solves with the derivative rows and, if this fails, with the force rows.
     fn solve_with_rows(
         &mut self,
         constraints: &[&Constraint],
@@ -367,8 +367,8 @@ fn are_in_both_orders(constraints: &[&Constraint]) -> bool {
     })
 }
 
-/// Whether the first contact of a part is coupled strongly to all others of the part; then the part is also coupled
-/// strongly to its neighbours.
+/// Whether the first constraint of a part is coupled strongly to all other constraints of the part; then the part is
+/// also coupled strongly to its neighbours.
 fn is_coupled(part: &FrictionalLcp) -> bool {
     let q = |i: usize, j: usize| part.q[(i, j)];
     let coupling = |j: usize| q(0, j).abs() / (q(0, 0) * q(j, j)).sqrt();

@@ -43,7 +43,8 @@ pub(crate) struct Lengths {
     pub position: PerBody,
 }
 
-/// Round-off of the forces of a part, with the displacement increment and the stiffness to which it is compared.
+/// Round-off of the forces of a part, with the displacement increment and the stiffness with which the forces are
+/// compared.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PartNoise {
     /// Round-off n of the residual, eq. (4.10) (force).
@@ -152,7 +153,7 @@ impl<'a> Scales<'a> {
     }
 
     /// Whether residual and correction of every part and body are below the tolerance, or round-off. If a residual is
-    /// all round-off, so is the correction that follows from it.
+    /// only round-off, the correction that follows from this residual is also only round-off.
     pub fn converged(&self, errors: &Errors) -> bool {
         let mut is_noise: SmallVec<[bool; 8]> = smallvec![true; self.increment.len()];
         for (part, &body) in self.parts.of_parts().iter().enumerate() {
@@ -220,7 +221,7 @@ impl<'a> Scales<'a> {
         bodies.map(of_body).fold(round_off, larger)
     }
 
-    /// Whether the gaps of the hinges in an iterate are as small as those of closed pairs must be.
+    /// Whether the gaps of the hinges in an iterate are as small as the gaps of closed pairs must be.
     pub fn closes_hinges(&self, hinges: &Hinges, u: &[f64]) -> bool {
         let of_node = |node: usize| {
             let body = self.parts.of_nodes()[node];

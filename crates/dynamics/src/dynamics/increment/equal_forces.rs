@@ -1,5 +1,5 @@
-//! Weight of the equal-force rule: it keeps the forces of pairs that can carry the same force near those of the last
-//! pass. See docs/theory/complementarity.md, Equal-force rule.
+//! Weight of the equal-force rule: it keeps the forces of pairs that can carry the same force near their forces in the
+//! last pass. See docs/theory/complementarity.md, Equal-force rule.
 
 /// First weight: the part of the compliance of a constraint that keeps its force.
 pub(super) const FIRST_WEIGHT: f64 = 1e-5;

@@ -161,7 +161,7 @@ impl Impulses {
         Ok(())
     }
 
-    /// Adds the reaction impulses C^T Lambda of the hinges to those of contact, with the arms at the start.
+    /// Adds the reaction impulses C^T Lambda of the hinges to the impulses of contact, with the arms at the start.
     fn add_hinges(
         &mut self,
         problem: &StepProblem,
@@ -208,7 +208,7 @@ impl Impulses {
     }
 
     /// Relative difference, in parts of the largest forces, between the impulses with the rows of the iterate and the
-    /// available ones; infinite if the available impulses belong to other constraints.
+    /// available impulses; infinite if the available impulses belong to other constraints.
     fn part_of_change(&self, steady: &Steady) -> f64 {
         let (struck, before) = (&self.of_iterate, &self.forces.constraints);
         let same_set = (before.iter().map(|c| c.key)).eq(struck.iter().map(|c| c.key));
@@ -413,7 +413,7 @@ fn standing_impulses(
     impulses(constraints, states, v0, dt, &mut system)
 }
 
-/// Part of the tolerance of forces up to which impulses may differ from those with the rows of the iterate.
+/// Part of the tolerance of forces up to which impulses may differ from the impulses with the rows of the iterate.
 const EXACT: f64 = 1e-2;
 
 /// The forces of the last pass, and the length of the increment.

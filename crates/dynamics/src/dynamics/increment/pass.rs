@@ -17,7 +17,7 @@ pub(crate) struct Pass<'a> {
     pub equilibrium: &'a Equilibrium,
     /// Force of the prescribed motion of the supports.
     pub support_force: &'a Vec<f64>,
-    /// Constraints and their forces.
+    /// Constraints of the pass, and their contact forces.
     pub contact: &'a ContactForces,
     /// Displacement U of the iterate, increment d = U - U0 and correction dU.
     pub displacements: [&'a Vec<f64>; 3],
@@ -106,7 +106,7 @@ impl Pass<'_> {
         Scales::new(parts, [&force, before], diagonals, lengths, tolerance)
     }
 
-    /// For every body the largest coordinate of the nodes of closed constraints and hinges at it.
+    /// For every body the largest coordinate of the nodes of the closed constraints and hinges that act on the body.
     fn contact_positions(&self, problem: &StepProblem) -> PerBody {
         let [u, ..] = self.displacements;
         let mut positions: PerBody = smallvec![0.0; problem.parts.bodies()];

@@ -18,8 +18,8 @@ use crate::dynamics::step::{
 };
 use crate::linear::larger;
 
-/// Number of passes after which further ones are accelerated, and slave nodes that go to and fro between two targets
-/// keep both.
+/// Number of passes after which further passes are accelerated, and slave nodes that go to and fro between two targets
+/// keep both targets.
 pub(super) const SLOW_PASSES: usize = 10;
 
 /// Largest error of the friction after the last pass, relative to the largest normal force. This largest error is a

@@ -229,8 +229,8 @@ impl PinIteration<'_, '_> {
         most.is_some_and(|(_, pressed)| pressed > 0.0)
     }
 
-    /// Holds the free motions of bodies with forces at their pins; returns whether there are any. The free motions are
-    /// found in a configuration in which the bodies have not moved away.
+    /// Holds the free motions of bodies with forces at their pins; returns whether there are any such motions. The free
+    /// motions are found in a configuration in which the bodies have not moved away.
     fn hold(
         &mut self,
         contact: &mut ContactForces,

@@ -5,7 +5,7 @@ use super::corrections::Corrections;
 use crate::dynamics::results::Cause;
 use crate::model::Factorization;
 
-/// Rate that fresh factors are expected to have until it is measured.
+/// Expected rate of the corrections with fresh factors, until the rate is measured.
 const FRESH_RATE: f64 = 0.03;
 /// Cost of a factorisation, in passes.
 const COST: f64 = 1.0;

@@ -31,8 +31,9 @@ struct RigidMotion {
 /// ```
 ///
 /// Here r is the vector from the centre of mass, which moves by dt v_c, or from the pin. The first pass is linear about
-/// the configuration of the predictor; started from U0, it would stretch a body that turns by the angle phi by phi²/2.
-/// The bodies that cannot move as rigid bodies have the increment that all supports of the model share, or zero.
+/// the configuration of the predictor; a first pass about U0 would stretch a body that turns by the angle phi by
+/// phi²/2. The bodies that cannot move as rigid bodies have the increment that all supports of the model share, or
+/// zero.
 pub(super) fn rigid_predictor(
     problem: &StepProblem,
     start: &State,
@@ -76,8 +77,8 @@ pub(super) fn rigid_predictor(
     d
 }
 
-/// Displacement increment, along both axes, that all supports of the model share; zero if they move differently.
-/// `prescribed` are the increments of the supports over all dofs.
+/// Displacement increment, along both axes, that all supports of the model share; zero if the supports move
+/// differently. `prescribed` are the increments of the supports over all dofs.
 fn of_all_supports(problem: &StepProblem, u0: &[f64], prescribed: &[f64]) -> [f64; 2] {
     let nodes = problem.model.mesh.node_count();
     [0, 1].map(|axis| {

@@ -26,8 +26,8 @@ pub(crate) struct Solved {
     pub material_dissipation: f64,
     /// Work of the temperature, and the larger of the two parts of this work.
     pub thermal_work: [f64; 2],
-    /// Displacement increment after the first pass, by the tangent at the start. If contact alone holds a body, the
-    /// increment is the one after the first pass with closed pairs.
+    /// Displacement increment after the first pass, by the tangent at the start. If contact alone holds a body, this is
+    /// the displacement increment after the first pass with closed pairs.
     pub tangent: Vec<f64>,
     /// Its passes.
     pub passes: Vec<PassReport>,

@@ -1,4 +1,4 @@
-//! Decides when K is factorised anew in static increments, by the measured rates of kept factors and of new ones. See
+//! Decides when K is factorised anew in static increments, by the measured rates of kept and of new factors. See
 //! docs/numerics.md, Kept factors of static steps.
 
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use crate::dynamics::results::Cause;
 
 /// Rate of the corrections from which on kept factors never pay.
 const POOR: f64 = 0.3;
-/// Rate that kept factors are expected to have until it is measured.
+/// Expected rate of the corrections with kept factors, until the rate is measured.
 const EXPECTED: f64 = 0.03;
 /// Rate of the first pass with new factors up to which kept factors are tried again.
 const SMOOTH: f64 = 0.01;
@@ -58,15 +58,15 @@ pub(super) struct StaticFactors {
     rate: f64,
     /// Correction of the last pass.
     last: Option<f64>,
-    /// Whether the last correction was smaller than the one before. If the correction was not smaller, the contact
-    /// states are still changing.
+    /// Whether the last correction was smaller than the correction before it. If the correction was not smaller, the
+    /// contact states are still changing.
     falls: bool,
-    /// Whether a pass has used the factors of an earlier one.
+    /// Whether a pass has used the factors of an earlier pass.
     have_been_kept: bool,
 }
 
 impl StaticFactors {
-    /// The factors of an attempt, which may begin with available ones.
+    /// The factors of an attempt, which may begin with available factors.
     pub fn new(rates: StaticRates, rule: FactorRule, tolerance: f64) -> Self {
         StaticFactors {
             rates,
@@ -168,7 +168,7 @@ impl StaticFactors {
         }
     }
 
-    /// Whether a pass has used the factors of an earlier one.
+    /// Whether a pass has used the factors of an earlier pass.
     pub fn have_been_kept(&self) -> bool {
         self.have_been_kept
     }

@@ -29,7 +29,7 @@ pub(crate) struct Failed {
     pub passes: Vec<PassReport>,
 }
 
-/// Records of an attempt, which remain even if it fails.
+/// Records of an attempt, which remain even if the attempt fails.
 #[derive(Default)]
 pub(super) struct Trace {
     pub passes: Vec<PassReport>,
@@ -221,7 +221,7 @@ impl PassContacts {
         self.make_room();
     }
 
-    /// Reserves memory for as many pairs in all passes as the last one has.
+    /// Reserves memory for as many pairs in all passes as the last pass has.
     fn make_room(&mut self) {
         let of_pass = self.counts.back().copied().unwrap_or(0);
         let passes = PASSES - self.counts.len();
@@ -270,7 +270,7 @@ impl PassContacts {
     }
 }
 
-/// The difference between two states of a slave node; `None` if there is none.
+/// The difference between two states of a slave node; `None` if the states are equal.
 fn alternation(p: &[Touch], q: &[Touch]) -> Option<Alternation> {
     let without = |p: &[Touch], q: &[Touch]| {
         let is_other = |touch: &&Touch| q.iter().all(|other| other.pair.nodes != touch.pair.nodes);

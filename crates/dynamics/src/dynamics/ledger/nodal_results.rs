@@ -381,8 +381,8 @@ pub(crate) fn node_path(
     }
 }
 
-/// First time in [0, dt] at which the node reaches the segment, or else its line, from outside; 0
-/// if it is inside at the start, dt if it stays outside.
+/// First time in [0, dt] at which the node reaches the segment, or else the line of the segment, from outside; 0 if the
+/// node is inside at the start, dt if it stays outside.
 fn impact_time(motions: &[QuadraticMotion; 3], dt: f64) -> f64 {
     let [s, a, b] = motions.map(|m| m.position);
     if project(s, a, b).gap <= 0.0 {
@@ -398,7 +398,7 @@ fn impact_time(motions: &[QuadraticMotion; 3], dt: f64) -> f64 {
 }
 
 /// Contact pressure |N|/A of every node, `N` entries (force/length^2), in the configuration of displacements `u`. The
-/// pressure is NaN at nodes without area, and at all nodes except those of slave surfaces and of masters with contact
+/// pressure is NaN at nodes without area, and at all nodes except nodes of slave surfaces and of masters in contact
 /// from surface to surface.
 ///
 /// ```text

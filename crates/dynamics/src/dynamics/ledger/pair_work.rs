@@ -25,7 +25,7 @@ pub(crate) struct PairWork {
     pub surfaces: [SurfaceParts; 2],
 }
 
-/// Work of the pairs in an increment whose forces are constant over it:
+/// Work of the pairs in an increment over which their forces are constant:
 ///
 /// ```text
 /// Pn.(Bn d) - Pn (a0 - a1), eq. (9.2), Pn (a0 - a1), eq. (9.14), and -Pt.(Bt d), eq. (9.3)

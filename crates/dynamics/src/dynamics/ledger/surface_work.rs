@@ -27,19 +27,19 @@ type Sums = [f64; 3];
 /// Wear and heat that the work of friction causes on the surfaces of a contact.
 #[derive(Debug, Clone, Copy)]
 struct Surfaces {
-    /// Whether both surfaces are slaves, as if a surface touches itself.
+    /// Whether both surfaces are slaves, for example because a surface touches itself.
     both: bool,
     /// Depth of wear per unit of the measure of wear (length^2/force), and whether this measure is the work of
     /// friction.
     wear: Option<(f64, bool)>,
     /// Part of the work of friction that heats each slave surface.
     heat: f64,
-    /// Whether all slave nodes have faces; the centres of discs have none.
+    /// Whether all slave nodes have faces; the centres of discs have no faces.
     has_faces: bool,
 }
 
 impl Surfaces {
-    /// The surfaces of a contact; `None` if it has neither wear nor heat.
+    /// The surfaces of a contact; `None` if the contact has neither wear nor heat.
     fn new(model: &Model, contact: &Contact, faces: &SlaveFaces) -> Option<Self> {
         let interaction = &contact.interaction;
         let both = contact.is_self_contact();
@@ -72,7 +72,7 @@ impl Surfaces {
 
 impl SurfaceWork {
     /// The sums at the start of a run. The sums are 0 at the nodes of slave surfaces with wear or heat and NaN
-    /// elsewhere; work and wear are NaN at nodes without faces too.
+    /// elsewhere; work and wear are also NaN at nodes without faces.
     pub fn new(model: &Model, faces: &SlaveFaces) -> Self {
         let of_contact = |contact: &Contact| Surfaces::new(model, contact, faces);
         let contacts: Vec<Option<Surfaces>> = model.contacts.iter().map(of_contact).collect();

@@ -27,8 +27,8 @@ impl Kinematics<'_> {
     }
 }
 
-/// Forces of an increment over all dofs (force). Forces on dofs that follow others, and on nodes of rigid bodies, have
-/// been handed over to the dofs that hold or drive these dofs.
+/// Forces of an increment over all dofs (force). Forces on dofs that follow other dofs, and on nodes of rigid bodies,
+/// have been handed over to the dofs that hold or drive these dofs.
 pub(super) struct HandedOver<'f> {
     load: Cow<'f, [f64]>,
     internal: Cow<'f, [f64]>,
@@ -138,7 +138,7 @@ pub(super) fn scheme_dissipation(
 }
 
 /// Strain energy at the end of an increment before nodes without mass come to rest (energy), computed from the energy
-/// after it:
+/// at rest:
 ///
 /// ```text
 /// W1 + R - (work of the loads on the way to the rest)      eq. (6.15)
@@ -169,7 +169,7 @@ pub(super) fn enter_returned(energy: &mut Energy, returned: &Returned) {
 }
 
 /// Work of supports between two equilibria (energy), along the path d from their forces f (dof, force) at the start to
-/// those at the end:
+/// their forces at the end:
 ///
 /// ```text
 /// sum over supports p of d_p (f0 + f1)_p/2      eq. (12.7)
@@ -409,7 +409,7 @@ mod tests {
         near(balance(&energy, 0.0), 0.0);
     }
 
-    /// Two supports at the ends of a spring k stretch it from u to u + d; their work is the change of k u²/2.
+    /// Two supports at the ends of a spring k stretch the spring from u to u + d; their work is the change of k u²/2.
     #[test]
     fn static_supports_stretch_a_linear_spring() {
         let (k, u, travel): (f64, f64, [f64; 3]) = (6.0, 0.5, [-0.125, 9.0, 0.25]);

@@ -1,5 +1,5 @@
-//! Touches: contacts of two bodies from the landing of a first node until no node is closed. Also finds landings of
-//! nodes that take over from nodes that have opened. See docs/theory/impacts.md, Touches.
+//! Touches: contacts of two bodies from the landing of a first node until no node is closed. The module also finds
+//! landings of nodes that take over from nodes that have opened. See docs/theory/impacts.md, Touches.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -60,8 +60,8 @@ impl Touches {
         transfer_fields!(archive, self => Self { increments, under_way; corners })
     }
 
-    /// Enters a converged increment. Adds the work of nodes that take over from others to the contacts, and returns the
-    /// touches that have ended.
+    /// Enters a converged increment. Adds the work of nodes that take over from other nodes to the contacts, and
+    /// returns the touches that have ended.
     pub fn enter(
         &mut self,
         problem: &StepProblem,
@@ -175,8 +175,8 @@ impl TouchUnderWay {
         }
     }
 
-    /// Nodes that land after others have opened, with the work Pn (Bn d) of their landings. If more nodes land than
-    /// have opened, each landing counts with the same share, since the order of the nodes is arbitrary.
+    /// Nodes that land after other nodes have opened, with the work Pn (Bn d) of their landings. If more nodes land
+    /// than have opened, each landing counts with the same share, since the order of the nodes is arbitrary.
     fn hand_over(
         &mut self,
         pairs: &[(&Constraint, &ClosedPair)],
@@ -264,8 +264,8 @@ impl FreeMasses {
     }
 }
 
-/// For every node whether the outline of its body turns there by more than [`CORNER`], or does not pass through it
-/// exactly once.
+/// For every node whether the outline of its body turns at the node by more than [`CORNER`], or does not pass through
+/// it exactly once.
 fn corners(mesh: &Mesh) -> Vec<bool> {
     let x = |node: usize| mesh.coordinates[node];
     let mut sides: Vec<[Vec<usize>; 2]> = vec![Default::default(); mesh.node_count()];

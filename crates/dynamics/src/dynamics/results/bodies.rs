@@ -36,8 +36,7 @@ pub struct BodyResult {
 }
 
 impl BodyResult {
-    /// Sets to zero the components that vanish in a body of revolution, all except those along its
-    /// axis.
+    /// Sets to zero the components that vanish in a body of revolution, that is, all components except along its axis.
     pub(crate) fn keep_to_axis(&mut self) {
         self.center[0] = 0.0;
         self.velocity[0] = 0.0;

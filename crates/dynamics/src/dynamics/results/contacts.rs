@@ -72,8 +72,8 @@ pub struct ContactResultant {
     pub reference_moment: f64,
     /// Work of the normal contact forces since the start of the analysis.
     pub normal_work: f64,
-    /// Part of the normal work at nodes that landed where others of the same two bodies had opened, while the bodies
-    /// stayed in contact.
+    /// Part of the normal work at nodes that landed where other nodes of the same two bodies had opened, while the
+    /// bodies stayed in contact.
     pub handover_work: f64,
     /// Energy dissipated by friction since the start of the analysis.
     pub friction_dissipation: f64,
@@ -113,8 +113,8 @@ pub struct Touch {
     pub is_at_corner: bool,
     /// Impulse J on one of the bodies (force time).
     pub impulse: f64,
-    /// J²/(8 m) with the reduced mass m of the bodies: their kinetic energy of approach if they rebound with the same
-    /// speed; 0 if both bodies are held.
+    /// Energy J²/(8 m) with the reduced mass m of the bodies: their kinetic energy of approach if they rebound with the
+    /// same speed; 0 if both bodies are held.
     pub energy: f64,
 }
 

@@ -34,10 +34,10 @@ pub enum Alternation {
     Changing {
         /// Slave node.
         slave: usize,
-        /// Ends a and b of both segments.
+        /// Ends a and b of the two segments between which the node changed.
         segments: [[usize; 2]; 2],
     },
-    /// The pair of the node stuck and slid, or slid one way and the other: slave, segment ends a
-    /// and b.
+    /// The pair of the node changed between sticking and sliding, or between sliding one way and the other: slave,
+    /// segment ends a and b.
     Sliding([usize; 3]),
 }

@@ -245,7 +245,7 @@ impl From<LinearError> for Cause {
 }
 
 impl Cause {
-    /// Whether the increment would fail in halves too.
+    /// Whether the increment would also fail if it were halved.
     pub fn stays(&self) -> bool {
         matches!(
             self,
@@ -256,7 +256,7 @@ impl Cause {
         )
     }
 
-    /// Whether a number that has grown too large is the only cause of the failure.
+    /// Whether the failure says no more than that a number has grown too large.
     pub(crate) fn is_overflow(&self) -> bool {
         match self {
             Cause::LinearSolver(LinearError::NotFinite(_)) | Cause::NotFinite { .. } => true,

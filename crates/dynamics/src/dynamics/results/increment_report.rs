@@ -130,7 +130,7 @@ impl IncrementReport {
         }
     }
 
-    /// Shortens vectors over the dofs to those of `nodes` nodes.
+    /// Shortens vectors over all dofs to the dofs of the first `nodes` nodes.
     pub fn keep_nodes(&mut self, nodes: usize) {
         let (state, nodal) = (&mut self.state, &mut self.nodal);
         for vector in [

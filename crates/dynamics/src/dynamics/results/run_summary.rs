@@ -12,7 +12,7 @@ pub struct Timings {
     pub assembly: Duration,
     /// Factorisations.
     pub factorization: Duration,
-    /// Solves with the factors, including those for the Delassus matrices.
+    /// Solves with the factors, including solves for the Delassus matrices.
     pub solve: Duration,
     /// Contact search: territories and their candidates.
     pub search: Duration,
@@ -22,7 +22,7 @@ pub struct Timings {
     pub lcp: Duration,
 }
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     /// All steps of the run are done.
@@ -36,7 +36,7 @@ pub enum Outcome {
 /// Totals of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSummary {
-    /// How the run ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
     /// Number of increments done.
     pub increments: usize,

@@ -15,7 +15,7 @@ use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace};
 /// Largest number of halvings of an increment because contact adds energy.
 const GAIN_HALVINGS: u32 = 5;
 
-/// Start of a subincrement: state and energies at the end of the last one.
+/// Start of a subincrement: state and energies at the end of the last subincrement.
 #[derive(Clone, Copy)]
 pub(crate) struct SubincrementStart<'a> {
     pub state: &'a State,

@@ -14,9 +14,9 @@ const EASY_PASSES: usize = 5;
 const EASY_INCREMENTS: u32 = 2;
 /// Factor by which an increment grows after easy increments.
 const GROWTH: f64 = 1.5;
-/// Factor on the length of an increment after it has failed.
+/// Factor by which the length of an increment changes after it has failed.
 const CUT: f64 = 0.25;
-/// Rest of the step, as a part of an increment, below which it is added to the increment.
+/// Rest of the step, as a part of an increment, below which this rest is added to the increment.
 const LEFT_OVER: f64 = 1e-6;
 /// Largest number of rejections in a row because of the truncation error.
 const REJECTIONS: u32 = 2;
@@ -77,7 +77,7 @@ impl Automatic {
         self.nominal
     }
 
-    /// Growth that an accepted increment allows the next one; `None` if the increment was not easy.
+    /// Growth that an accepted increment allows the next increment; `None` if the increment was not easy.
     fn allowed_growth(&self, how: Ended) -> Option<f64> {
         let growth = match self.increments.incrementation {
             Incrementation::Error { tolerance } => {

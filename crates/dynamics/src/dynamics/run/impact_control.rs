@@ -9,7 +9,7 @@ use crate::dynamics::step::Interval;
 /// Largest number of impact events within a nominal increment. Behind the last of these events the rest of the
 /// increment is one subincrement without events, so that chattering contacts do not stall a run.
 pub(super) const MOST_EVENTS: usize = 50;
-/// Number of halvings of a subincrement from which on nodes land within it.
+/// Number of halvings of a subincrement from which on nodes land within the subincrement.
 pub(super) const EVENT_HALVINGS: u32 = 2;
 
 /// A nominal increment that is solved up to the step time `from`.

@@ -291,8 +291,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         outcome
     }
 
-    /// Removes the forces of contacts that a step removes, and of supports that it no longer has: at once in a dynamic
-    /// step, gradually over a static or quasi-static step.
+    /// Removes the forces of contacts that a step removes, and of supports that the step no longer has: at once in a
+    /// dynamic step, gradually over a static or quasi-static step.
     fn release(&mut self, problem: &mut StepProblem, step: &Step) {
         let removed = &step.contacts.removed;
         (self.state.contact).retain(|pair| !removed.contains(&pair.key.contact()));
@@ -644,8 +644,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         })
     }
 
-    /// Reports a failed attempt that is to be repeated with a smaller length. Returns the failure
-    /// if the repetition would fail too, or if there is no smaller length.
+    /// Reports a failed attempt that is to be repeated with a smaller length. Returns the failure if the repetition
+    /// would also fail, or if there is no smaller length.
     fn cut_back(
         &mut self,
         failure: Failure,
@@ -733,7 +733,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Computes the velocity of supports and equations, and the acceleration, at the start of a dynamic step that does
-    /// not continue another; at the start of a static step both are zero.
+    /// not continue another dynamic step; at the start of a static step velocity and acceleration are zero.
     fn begin_motion(
         &mut self,
         problem: &StepProblem,

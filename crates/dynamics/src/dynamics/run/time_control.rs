@@ -28,8 +28,8 @@ pub(crate) trait TimeControl {
     /// Continues from the end of an accepted interval.
     fn accepted(&mut self, interval: &Interval, how: Ended);
 
-    /// Truncation error above which a converged interval of this length is repeated; `None` if it is accepted with any
-    /// error.
+    /// Truncation error above which a converged interval of this length is repeated; `None` if the interval is accepted
+    /// with any error.
     fn largest_error(&self, _dt: f64) -> Option<f64> {
         None
     }
@@ -50,7 +50,7 @@ pub(crate) trait TimeControl {
     }
 }
 
-/// How an accepted interval ended.
+/// End of an accepted interval: impact, passes and error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ended {
     /// Whether an impact has ended the interval.

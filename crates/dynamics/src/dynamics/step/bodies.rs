@@ -94,7 +94,7 @@ fn centres(problem: &StepProblem, mass: &[f64]) -> Vec<[f64; 2]> {
     sums.iter().map(centre).collect()
 }
 
-/// How supports and equations hold a body.
+/// Way in which supports and equations hold a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {
     /// Neither supports nor equations hold the body.
@@ -105,7 +105,7 @@ pub(crate) enum Hold {
     Held,
 }
 
-/// How the bodies of a step are held; bodies of revolution can only move along their axis.
+/// Way in which each body of a step is held; bodies of revolution can only move along their axis.
 pub(crate) fn holds(problem: &StepProblem) -> Vec<Hold> {
     let (parts, unknowns) = (problem.parts, &problem.unknowns);
     if problem.model.mesh.is_axisymmetric() {

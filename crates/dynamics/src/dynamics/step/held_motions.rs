@@ -113,8 +113,8 @@ impl HeldMotions {
         }
     }
 
-    /// Turns the held motions with the surfaces at which the bodies lie, and releases those that are not free any more.
-    /// Returns whether any motion is released.
+    /// Turns the held motions with the surfaces at which the bodies lie, and releases motions that are not free any
+    /// more. Returns whether any motion is released.
     pub fn follow(
         &mut self,
         pins: &Pins,
@@ -194,7 +194,7 @@ impl HeldMotions {
         self.0.iter().map(part).fold(0.0, f64::max)
     }
 
-    /// Largest force that holds a body, relative to the normal forces on it.
+    /// Largest force that holds a body, relative to the normal forces on the body.
     pub fn part(
         &self,
         pins: &Pins,

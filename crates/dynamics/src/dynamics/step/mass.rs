@@ -151,8 +151,8 @@ fn carried(own: &[usize], m: &[f64], redistribution: &Redistribution) -> (Vec<us
     (carriers, carried)
 }
 
-/// Mass matrix T^T M T over the unknowns of a step. The pattern of the mass matrix includes that of the elements, which
-/// come first in the assembly.
+/// Mass matrix T^T M T over the unknowns of a step. The pattern of the mass matrix includes the pattern of the
+/// elements, which come first in the assembly.
 pub(super) fn unknown_mass(masses: &Masses, unknowns: &Unknowns) -> Assembled {
     let of_node = |&node: &usize| [2 * node, 2 * node + 1];
     let of_list = |nodes: &Vec<usize>| nodes.iter().flat_map(of_node).collect();
@@ -162,8 +162,8 @@ pub(super) fn unknown_mass(masses: &Masses, unknowns: &Unknowns) -> Assembled {
     mass
 }
 
-/// Expands a mass over nodes, n x n, to both directions of their dofs, 2n x 2n; both are stored
-/// column by column.
+/// Expands a mass over nodes, n x n, to both directions of their dofs, 2n x 2n; both matrices are stored column by
+/// column.
 fn in_both_directions(m: &[f64], n: usize) -> Vec<f64> {
     let d = 2 * n;
     let mut both = vec![0.0; d * d];

@@ -236,8 +236,8 @@ fn masses(problem: &StepProblem) -> Masses {
     Masses::new((problem.elements, bodies), problem.redistribution)
 }
 
-/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and
-/// the mass matrix. Both matrices are over the unknowns of a step: T^T K* T and T^T M T.
+/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), which is kept until it is assembled again, and the mass
+/// matrix. Both matrices are over the unknowns of a step: T^T K* T and T^T M T.
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
@@ -484,10 +484,10 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.factorization, || matrix.factorize())
     }
 
-    /// Makes the motions of pins with the stiffness `a` free unknowns of the complementarity problems; a part of them
-    /// is `held`. The bodies are at the positions `at`, where the forces `unbalanced` act. `skew` gives N x over all
-    /// dofs: the changes of forces, for a motion x, that the matrix omits. `reach` is the largest distance that nodes
-    /// may move.
+    /// Makes the motions of pins with the stiffness `a` free unknowns of the complementarity problems; a part of these
+    /// motions is `held`. The bodies are at the positions `at`, where the forces `unbalanced` act. `skew` gives N x
+    /// over all dofs: the changes of forces, for a motion x, that the matrix omits. `reach` is the largest distance
+    /// that nodes may move.
     ///
     /// ```text
     /// Z = W (S a + N Z),   works W S a      eq. (12.3)

@@ -63,8 +63,8 @@ impl Normals {
             .collect()
     }
 
-    /// Force along a motion that facets may cause, since their normals differ from those of a smooth surface by up to
-    /// half the angle between neighbouring segments.
+    /// Force along a motion that facets may cause, since their normals differ from the normals of a smooth surface by
+    /// up to half the angle between neighbouring segments.
     ///
     /// ```text
     /// f_e = sum_j Pn_j |Gt_j z| sin(beta_j)/2      eq. (12.12)

@@ -1,4 +1,4 @@
-//! Bodies, and parts of bodies with one kind of section: convergence is measured for each of them
+//! Bodies, and parts of bodies with one kind of section: convergence is measured for each body and part
 //! (docs/theory/time.md, Convergence).
 
 use std::collections::HashMap;

@@ -104,7 +104,7 @@ impl PinFrame<'_> {
 }
 
 impl Pins {
-    /// The pins of a static step; in a dynamic step there are none, since inertia holds all bodies.
+    /// The pins of a static step; a dynamic step has no pins, since inertia holds all bodies.
     pub fn new(problem: &StepProblem) -> Self {
         if problem.integration.has_rates {
             return Pins::default();
@@ -368,7 +368,7 @@ impl Pins {
     }
 
     /// Turns the rigid part of a correction into a finite motion of bodies that turn, and limits it to the reach of the
-    /// contact search; returns whether it is limited. `at` are the positions of the iterate.
+    /// contact search; returns whether the motion has been limited. `at` are the positions of the iterate.
     pub fn make_finite(&self, at: &dyn Fn(usize) -> [f64; 2], reach: f64, du: &mut [f64]) -> bool {
         let mut is_limited = false;
         for body in &self.bodies {

@@ -31,7 +31,7 @@ use crate::vectors::distance;
 /// The equation of motion of a step.
 pub(crate) struct StepProblem<'m> {
     pub model: &'m Model,
-    /// Reference coordinates of the nodes, followed by those of the bodies that turn.
+    /// Reference coordinates of the nodes, followed by the coordinates of the nodes of bodies that turn.
     pub coordinates: &'m [[f64; 2]],
     pub elements: &'m Elements,
     pub mass: &'m Mass,
@@ -84,7 +84,7 @@ pub(crate) struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// Displacements U_theta and the temperatures of the nodes there.
+    /// Displacements U_theta and the temperatures of the nodes with them.
     pub fn place(&self) -> [&[f64]; 2] {
         [&self.u_theta, &self.temperature]
     }
@@ -468,7 +468,7 @@ pub(crate) struct Discretization<'m> {
     pub redistribution: &'m Redistribution,
     pub parts: Parts,
     pub turning: Vec<TurningBody>,
-    /// Reference coordinates of the nodes, followed by those of the bodies that turn.
+    /// Reference coordinates of the nodes, followed by the coordinates of the nodes of bodies that turn.
     pub coordinates: Vec<[f64; 2]>,
     /// Overlaps of slave nodes at the start, for contacts with shrink fits (length).
     pub overlaps: &'m [Vec<f64>],
@@ -501,7 +501,7 @@ impl<'m> Discretization<'m> {
         found.map_or(self.contacts, |(_, contacts)| contacts)
     }
 
-    /// Whether there are dofs other than those of the nodes.
+    /// Whether there are other dofs than the dofs of the nodes.
     pub fn has_more_dofs(&self) -> bool {
         !self.turning.is_empty()
     }

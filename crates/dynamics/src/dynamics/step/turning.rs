@@ -333,7 +333,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Sets the displacements of the angles to those after the increment `d` from `u0`: theta = theta_0 + 2 atan(c/2).
+    /// Sets the displacements of the angles to the values after the increment `d` from `u0`: theta = theta_0 + 2
+    /// atan(c/2).
     pub fn turn(&self, [u0, d]: [&[f64]; 2], u: &mut [f64]) {
         for body in self.bodies {
             let c = d[body.spin] / body.length;
@@ -369,7 +370,7 @@ impl<'m> Turning<'m> {
     }
 
     /// Changes the increments s = L c of the angles that start from the iterate `u` into increments that continue the
-    /// one from `u0` to `u` and lead to the same angles:
+    /// increment from `u0` to `u` and lead to the same angles:
     ///
     /// ```text
     /// tan(a + b) - tan a = tan b (1 + tan² a)/(1 - tan a tan b)
@@ -384,7 +385,7 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Sets the displacements of all nodes of the bodies to those of the poles and angles.
+    /// Sets the displacements of all nodes of the bodies to the motion of the poles and angles.
     pub fn place(&self, u: &mut [f64]) {
         for (body, pole) in self.with_poles() {
             let (of_pole, turn) = ([u[2 * pole], u[2 * pole + 1]], body.angle(u).sin_cos());

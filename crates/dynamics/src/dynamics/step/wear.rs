@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Number of increments over which the mean number of passes of new factors is measured.
 const NEW: u32 = 5;
-/// Part of the least mean number of passes by which passes may exceed it.
+/// Excess of the number of passes over its least mean that is allowed, as a part of this mean.
 const SLACK: f64 = 0.05;
 /// Cost of a factorisation, including the compliance of the contacts, in passes.
 const COST: f64 = 10.0;
@@ -77,7 +77,7 @@ impl Wear {
         self.has_failed || self.excess > self.bound * COST
     }
 
-    /// Notes that K* is factorised for increments of another length, or for one pass; returns the state for which it is
+    /// Notes that K* is factorised for increments of another length, or for one pass; returns the state for which K* is
     /// factorised.
     pub fn begin(&mut self) -> FactoredState {
         *self = Wear {

@@ -284,7 +284,7 @@ impl<'m> Workspace<'m> {
     /// ```
     ///
     /// # Errors
-    /// Returns [`LinearError::Dependent`] with a hinge that is redundant because of others.
+    /// Returns [`LinearError::Dependent`] with a hinge that other hinges make redundant.
     pub fn start_hinges(
         &mut self,
         problem: &StepProblem,
