@@ -185,7 +185,7 @@ class Building(ABC):
         return self.add("CONTACT PROPERTY ASSIGNMENT", ("", "", name))
 
     def tie(self, slave: str, master: str) -> Self:
-        """Appends a tie, which joins two surfaces as if they were parts of one body."""
+        """Appends a tie, which joins two surfaces as if these were parts of one body."""
         return self.add(f"TIE, NAME=TIE{len(self.find('TIE')) + 1}", (slave, master))
 
     def _interaction(self, friction: Number) -> str:
@@ -234,10 +234,9 @@ class Building(ABC):
     def pre_tension(self, surface: str, node: str, normal: tuple[float, float] | None = None) -> Self:
         """Cuts a body, such as a bolt, along faces between its elements, for its preload.
 
-        In steps, direction 1 of the node (see `node`) is the overlap of the two sides: `load` gives the force of the
-        bolt (tension is positive), and `support` prescribes the overlap. `normal` is the normal of the section; the
-        default is the mean normal of the faces.
-        """
+        In steps, direction 1 of the node (see `node`) is the overlap of the two sides of the cut: `load` gives the
+        force of the bolt (tension is positive), and `support` prescribes the overlap. `normal` is the normal of the
+        section; the default is the mean normal of the faces. """
         if normal == (0.0, 0.0):
             raise Fault(f"{surface}: the normal of the section has no length")
         rows = [] if normal is None else [(*map(float, normal), 0.0)]
@@ -247,8 +246,8 @@ class Building(ABC):
         """Appends a linear equation a1 u1 + a2 u2 + ... = 0; each term is given by its node or node set, direction and
         factor.
 
-        The displacement of the first term follows from the others. Node sets give an equation for every node.
-        """
+        The displacement of the first term follows from the displacements of the other terms. Node sets give an equation
+        for every node. """
         if len(terms) < 2:
             raise Fault("an equation has two terms or more")
         for node, direction, factor in terms:
@@ -260,14 +259,14 @@ class Building(ABC):
         return self.add("EQUATION", (len(terms),), *([x for term in line for x in term] for line in lines))
 
     def spring(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
-        """Appends a spring between two nodes, given by their numbers, along the line between them.
+        """Appends a spring between two nodes, given by their numbers, along the line between these nodes.
 
         `law` is the stiffness of the spring, or pairs of force and elongation with increasing elongation; beyond the
         pairs the force is constant. """
         return self._connect("SPRINGA", "SPRING", (first, second), law)
 
     def dashpot(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
-        """Appends a dashpot between two nodes, given by their numbers, along the line between them.
+        """Appends a dashpot between two nodes, given by their numbers, along the line between these nodes.
 
         `law` is the coefficient of the dashpot, or pairs of force and rate of elongation with increasing rate. """
         return self._connect("DASHPOTA", "DASHPOT", (first, second), law)
@@ -338,8 +337,8 @@ class Building(ABC):
         return self.add(_with_amplitude("TEMPERATURE", amplitude), (nodes, value))
 
     def support(self, nodes: str, *directions: int, value: Number = 0.0, amplitude: str = "") -> Self:
-        """Holds a node set in directions 1 or 2 (the default is both) or 6, the angle of a rigid body; in a step the
-        support may also move the set."""
+        """Holds a node set in directions 1 or 2 (the default is both directions) or 6, the angle of a rigid body; in a
+        step the support may also move the set."""
         rows = [(nodes, one, one, value) for one in directions or (1, 2)]
         return self.add(_with_amplitude("BOUNDARY", amplitude), *rows)
 

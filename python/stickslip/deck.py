@@ -53,7 +53,7 @@ class Deck(Building, Shown):
 
     @classmethod
     def parse(cls, text: str, folder: Path | str = ".") -> "Deck":
-        """A deck made from text; files that it names are searched in `folder`."""
+        """A deck made from text; files that the text names are searched in `folder`."""
         return cls._of(_lines(text, Path(folder), Path(folder)), "the deck", folder)
 
     @classmethod
@@ -81,8 +81,8 @@ class Deck(Building, Shown):
         return Path(path)
 
     def filled(self, values: Mapping[str, Value]) -> "tuple[Deck, dict[str, Value]]":
-        """The deck with the contents of files whose names are parameters, and the values of parameters that it still
-        needs.
+        """The deck with the contents of files whose names are parameters, and the values of parameters that these names
+        still need.
 
         A parameter that is not given has the value of `*PARAMETER`, if this value is a plain text.
         """

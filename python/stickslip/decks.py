@@ -111,7 +111,7 @@ class Grid:
         return self.first_element + i + j * self.nx
 
     def mesh(self, element_type: str) -> str:
-        """Cards NODE and ELEMENT; both sets have the name of the grid."""
+        """Cards NODE and ELEMENT; the node set and the element set have the name of the grid."""
         nodes = [
             (self.node(i, j), *self.place(i, j))
             for j in range(self.ny + 1)
@@ -184,7 +184,7 @@ class GridMesh:
         return self.first_element + len(self.elements)
 
     def mesh(self, element_type: str) -> str:
-        """Cards NODE and ELEMENT; both sets have the name of the mesh."""
+        """Cards NODE and ELEMENT; the node set and the element set have the name of the mesh."""
         nodes = [(self.first_node + k, *place) for k, place in enumerate(self.nodes)]
         elements = [
             (self.first_element + k, *(self.first_node + node for node in corners))
@@ -249,10 +249,9 @@ def disc(
     first_node: int = 1,
     first_element: int = 1,
 ) -> GridMesh:
-    """A disc, turned by an angle: a bulging square of side x side elements, with rings around it.
+    """A disc, turned by an angle: a bulging square of side x side elements, with rings around the square.
 
-    There are 4 `side` nodes on its rim.
-    """
+    The rim of the disc has 4 `side` nodes. """
     core = 0.55 * radius
     flat = [(2 * i / side - 1, 2 * j / side - 1) for j in range(side + 1) for i in range(side + 1)]
     nodes = []

@@ -19,7 +19,7 @@ STRAIGHT = np.array([0.5, 0.5])
 
 @dataclass(frozen=True)
 class Drawing:
-    """Vertices, and the lines and triangles between them."""
+    """Vertices, and the lines and triangles between these vertices."""
 
     nodes: int
     """The first vertices are the N nodes."""
@@ -84,8 +84,8 @@ class Drawing:
 
     @cached_property
     def triangles(self) -> Integers:
-        """Triangles that fill the elements [T, 3]; they meet at the middles of the elements, which count as further
-        vertices behind all others."""
+        """Triangles that fill the elements [T, 3]; the triangles of an element meet at its middle; these middles count
+        as further vertices behind all others."""
         middle = self.nodes + len(self.after)
         fans = [
             np.stack([ring, np.roll(ring, -1), np.full(len(ring), middle + element)], axis=1)

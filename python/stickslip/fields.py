@@ -207,7 +207,7 @@ def _unique(names: Iterable[str]) -> list[str]:
 
 def tensor_columns(name: str) -> dict[str, Columns]:
     """The fields that a tensor of the file contains, with their columns: `S` in the plane (xx yy xy) and `S33` across
-    it."""
+    the plane."""
     base = name.removesuffix(AT_NODES)
     return {name: [0, 1, 3], f"{base}33{name[len(base):]}": 2}
 

@@ -81,7 +81,8 @@ class Frame(Mapping[str, Any]):
         return self.at_places(name)[: len(self.result.coordinates)]
 
     def at_places(self, name: str) -> NDArray[Any]:
-        """A field at the places [P, ...] of `nodal.Recovery`; a node between materials has a place for each of them.
+        """A field at the places [P, ...] of `nodal.Recovery`; a node between materials has a place for each of these
+        materials.
 
         Invariants of stresses are computed from the stresses at the places. If the program has written a field at nodes
         (`POSITION=NODES`), these values are used at nodes of one material. """

@@ -2,8 +2,8 @@
 nodes.
 
 The columns follow the manual of CalculiX GraphiX, section "Result Format". Numbers in the file have six digits.
-Stresses are averaged at nodes within a body and a material (see `nodal`); a node between two materials gets only one of
-the two values. Segments of rigid surfaces are beams of two nodes. """
+Stresses are averaged at nodes within a body and a material (see `nodal`); a node between two materials gets only the
+value of one material. Segments of rigid surfaces are beams of two nodes. """
 
 from collections.abc import Iterable, Iterator
 
@@ -82,8 +82,8 @@ def _results(
 
 
 def _rows(labels: Integers, values: Array) -> Iterable[str]:
-    """A line for each node; a number whose exponent would need three digits is written as 0 if it is too small, and as
-    NaN if it is too large."""
+    """A line for each node; a number whose exponent would need three digits is written as 0 if its size is too small,
+    and as NaN if its size is too large."""
     size = np.abs(values)
     written = np.where(size < 1e-99, 0.0, np.where(size < 9.9999e99, values, np.nan))
     numbers = "".join(["%12.5E"] * values.shape[1])

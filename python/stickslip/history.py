@@ -1,8 +1,7 @@
 """Histories of a result, with one row per increment; row 0 is the start (docs/output.md, /history).
 
-A group reads a dataset when it is accessed, `group.name` or `group["name"]`, up to the last complete row. Every result
-has the names that the classes annotate; a result may have more.
-"""
+A group reads a dataset when the dataset is accessed, `group.name` or `group["name"]`, up to the last complete row.
+Every result has the names that the classes annotate; a result may have more. """
 
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
@@ -35,7 +34,7 @@ class Group(Mapping[str, Any]):
 
     @property
     def _stored(self) -> Mapping[str, Any]:
-        """The group in the file; an empty group if the result lacks it."""
+        """The group in the file; an empty group if the result lacks the group."""
         return self._result.item(self._path) if self._result.has(self._path) else {}
 
     def __getitem__(self, name: str) -> Any:
@@ -234,7 +233,7 @@ class ElementSets(Named[ElementSet]):
 
 
 class Rigid(Group):
-    """Motion of the reference node of a rigid surface, and the reaction there."""
+    """Motion of the reference node of a rigid surface, and the reaction at this node."""
 
     position: Array
     U: Array

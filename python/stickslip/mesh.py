@@ -240,7 +240,7 @@ def _indices(values: ArrayLike) -> Integers:
 
 
 def _corners(element: Integers) -> Integers:
-    """The corners of an element; its nodes between corners come after them."""
+    """The corners of an element; the nodes between corners come after the corners."""
     return element[: len(element) // 2] if len(element) > 4 else element
 
 

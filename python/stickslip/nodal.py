@@ -16,7 +16,7 @@ FARTHEST = 8.0
 
 
 def around_element(cell: Integers) -> Integers:
-    """The nodes of an element in their order around it; a node between two corners stands between them."""
+    """The nodes of an element in their order around it; a node between two corners stands between these corners."""
     return np.reshape(cell, (2, -1)).T.ravel() if len(cell) > 4 else cell
 
 

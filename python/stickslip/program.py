@@ -1,4 +1,5 @@
-"""Runs the program: `run` solves a deck, `check` reads it; messages of the program become warnings and exceptions."""
+"""Runs the program: `run` solves a deck, `check` only reads a deck; messages of the program become warnings and
+exceptions."""
 
 import os
 import re
@@ -70,7 +71,7 @@ class RunFailed(Fault):
 
 
 class DeckRejected(RunFailed):
-    """The deck has errors: `diagnostics` holds them."""
+    """The deck has errors, which `diagnostics` holds."""
 
 
 class RunStopped(RunFailed):
@@ -153,9 +154,9 @@ def run(
     or `resume` continues the run from its checkpoint. `options` are the options of `stickslip run`: frames, every,
     solver, threads, checkpoint, extend and oldjob have a value; strict, lenient, verbose and resume are True. `words`
     holds further options as they are typed on the command line. `parameters` gives values of parameters of the deck,
-    which replace those of its `*PARAMETER` cards. `progress` is True to show the progress of the run (as a bar in a
-    notebook), or a function that is called with a `Progress` several times a second. A failed run raises DeckRejected,
-    RunStopped or RunFailed. """
+    which replace the values of its `*PARAMETER` cards. `progress` is True to show the progress of the run (as a bar in
+    a notebook), or a function that is called with a `Progress` several times a second. A failed run raises
+    DeckRejected, RunStopped or RunFailed. """
     folder = Path(output)
     values = dict(parameters or {})
     try:
@@ -289,7 +290,7 @@ def _wait(process: subprocess.Popen[bytes], watch: Callable[[bool], None] | None
 
 
 def _duration(deck: Path) -> float | None:
-    """Total time of all steps of a deck, if it can be determined."""
+    """Total time of all steps of a deck, if this time can be determined."""
     try:
         return Deck.read(deck).duration
     except (OSError, Fault):  # the program says what is wrong
@@ -317,7 +318,7 @@ def _watch(
 
 
 def _stamp(file: Path) -> tuple[int, ...]:
-    """A value that changes whenever a file is written; empty if there is no file."""
+    """A value that changes whenever a file is written; empty if the file does not exist."""
     try:
         found = file.stat()
     except OSError:

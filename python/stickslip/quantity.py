@@ -49,7 +49,7 @@ class Quantity:
 
     @property
     def title(self) -> str:
-        """Title of an axis; the name of a single component is part of it."""
+        """Title of an axis; the title includes the name of a single component."""
         component = next(iter(self.parts)) if self.alone else ""
         return f"{self.quantity}, {component}" if component else self.quantity
 
@@ -60,7 +60,7 @@ class Quantity:
 
 
 def find(result: ResultFile, name: str) -> Quantity:
-    """The history with this name; if there is none, a Fault lists the names that exist."""
+    """The history with this name; if no history has this name, a Fault lists the names that exist."""
     place, slash, field = name.rpartition("/")
     matched = NAME.fullmatch(place + slash + known(field, {path.rpartition("/")[2] for path in result.histories}))
     if matched is None:

@@ -112,7 +112,7 @@ class ResultFile:
 
     @cached_property
     def outlines(self) -> list[Integers]:
-        """Node indices in order around each element; a node between two corners stands between them."""
+        """Node indices in order around each element; a node between two corners stands between these corners."""
         return list(map(around_element, self.cells))
 
     @cached_property
@@ -148,7 +148,7 @@ class ResultFile:
 
     @cached_property
     def middles(self) -> dict[int, tuple[int, int]]:
-        """The two corners of each side that has a node between them, by this node."""
+        """The two corners of each side with a node between its corners, by this node."""
         found: dict[int, tuple[int, int]] = {}
         for cell in self.cells:
             if len(cell) > 4:

@@ -55,7 +55,7 @@ def _image(kind: str, data: bytes) -> str:
 
 
 def deck_html(deck: Deck) -> str:
-    """Picture of the model of a deck and the messages of the program about it; without the program, the number of
+    """Picture of the model of a deck and the messages of the program about the deck; without the program, the number of
     cards."""
     counts: dict[str, int] = {}
     for card in deck.cards:

@@ -218,8 +218,8 @@ class Places:
 
 
 def places(x: Array, way: Array, nodes: Integers, contact: Contact) -> Iterator[Places]:
-    """Yields the positions of nodes relative to segments, some nodes at a time; segments that end in a node count as
-    infinitely far from it.
+    """Yields the positions of nodes relative to segments, some nodes at a time; a segment that ends in a node counts as
+    infinitely far from this node.
 
     `way` [N] holds the distances by which nodes have moved in the increment. """
     segments = contact.segments

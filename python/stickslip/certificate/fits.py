@@ -1,4 +1,4 @@
-"""Steps in which overlaps of fits change: there the result file does not state the overlap that is left."""
+"""Steps in which overlaps of fits change: in such steps the result file does not state the overlap that is left."""
 
 from stickslip.frame import Frame
 from stickslip.result import Result

@@ -250,7 +250,7 @@ def _momenta(result: Result, check: Check) -> None:
 
 
 def _shares(result: Result, of_node: Integers, bodies: int, quantity: str) -> tuple[Flags, Array]:
-    """Force or impulse of all contacts on each body [I, B, 2], and whether the file determines it [I, B]."""
+    """Force or impulse of all contacts on each body [I, B, 2], and whether the file determines this value [I, B]."""
     dt = result.history["dt"]
     told = np.ones((len(dt), bodies), np.bool_)
     total = np.zeros((len(dt), bodies, 2))

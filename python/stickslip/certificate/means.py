@@ -333,12 +333,12 @@ class Means:
                     yield self._point(face, eta, weight, i, j, halfway)
 
     def _gauss(self, face: int, segments: set[int]) -> tuple[tuple[float, float], ...]:
-        """Points of a cell, which integrate the gap over it, also for curved faces."""
+        """Points of a cell, which integrate the gap over the cell, also for curved faces."""
         cubics = [self.face_bulges.coefficients[face], *(self.bulges.coefficients[i] for i in segments)]
         return THREE if any(c[3] or (self.rings and c.any()) for c in cubics) else TWO
 
     def _faced(self, face: int) -> list[int]:
-        """Segments that a face is turned to at the start, that are within reach and not behind it."""
+        """Segments that a face faces at the start, and that are within reach and not behind the face."""
         x, a, b, t = self.at[0]
         p, q = (self._place(node, x) for node in self.faces[face])
         e = (q - p) / np.linalg.norm(q - p)

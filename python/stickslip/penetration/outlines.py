@@ -1,4 +1,4 @@
-"""Outlines of bodies and the position of points relative to them; signs of areas are exact."""
+"""Outlines of bodies and the position of points relative to outlines; signs of areas are exact."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -118,8 +118,9 @@ def distances(point: Array, start: Array, end: Array, bulges: Bulges | None = No
 
 
 def between_chord_and_curve(point: Array, start: Array, end: Array, bulges: Bulges) -> Integers:
-    """Winding number of curved edges around points minus that of their chords [points, edges]: 1 for a point between a
-    chord and a curve outside of it, -1 for a point between a chord and a curve inside of it."""
+    """Winding number of curved edges around points minus the winding number of their chords [points, edges]: 1 for a
+    point between a chord and a curve outside of the chord, -1 for a point between a chord and a curve inside of the
+    chord."""
     if not bulges.coefficients.any():
         return np.zeros((len(point), len(start)), np.int64)
     gap, height, over = _across(point, start, end, bulges)

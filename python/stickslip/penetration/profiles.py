@@ -70,7 +70,7 @@ def crossings(start: Array, end: Array, first: Array, second: Array) -> Integers
     their left.
 
     A crossing in the other direction (from left to right) counts -1. A point that is on the left of a segment by less
-    than LIMIT times the path touches the segment, and counts as in front of it. """
+    than LIMIT times the path touches the segment, and counts as in front of the segment. """
     low = (np.minimum(start, end)[:, None] <= np.maximum(first, second)[None]).all(axis=2)
     high = (np.maximum(start, end)[:, None] >= np.minimum(first, second)[None]).all(axis=2)
     rows, columns = np.nonzero(low & high)

@@ -31,7 +31,7 @@ class Field:
     """Whether values of elements are averaged at nodes."""
 
     def values(self, results: Result, frame: int) -> Array:
-        """Values in a frame, at places [P] or of elements [E]; NaN where there is no value."""
+        """Values in a frame, at places [P] or of elements [E]; NaN at places and elements without a value."""
         shown, spelled = results.frames[frame], results.frames.known(self.name)
         field = spelled.partition(":")[0]
         rows = shown.at_places(field) if self.of_nodes(results) else shown[field]

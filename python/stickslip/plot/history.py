@@ -140,7 +140,7 @@ def contact_state(axes: Axes, results: Result) -> None:
 
 
 def legend_beside(axes: Sequence[Axes]) -> None:
-    """One legend on the right of a row of axes for all lines in them; equal labels appear once."""
+    """One legend on the right of a row of axes for all lines in these axes; equal labels appear once."""
     entries: dict[str, Any] = {}
     for each in axes:
         handles, labels = each.get_legend_handles_labels()

@@ -256,7 +256,7 @@ def chosen_times(results: Result, times: list[float] | None, interval: float | N
 
 
 def step_ends(results: Result) -> list[int]:
-    """Frames at the ends of the steps; for more than ten steps, at some of them."""
+    """Frames at the ends of the steps; for more than ten steps, at the ends of some steps."""
     step, time = results.history["step"], results.history["time"]
     last = np.flatnonzero(np.diff(step, append=step[-1] + 1))
     chosen = last[:: -max(1, -(-len(last) // 10))]

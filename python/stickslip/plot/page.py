@@ -1,4 +1,4 @@
-"""Pages of panels that fill the paper: all panels show the same box, and legends stand beside them."""
+"""Pages of panels that fill the paper: all panels show the same box, and legends stand beside the panels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -172,7 +172,7 @@ class Page:
             self._below(legends)
 
     def panel(self, row: int, column: int, last: bool = True) -> Axes:
-        """Axes of a panel; `last` says that no panel stands below it."""
+        """Axes of a panel; `last` says that no other panel stands below this panel."""
         x, y = self.grid.corner(row, column)
         axes = self._axes(self.left + x, self.bottom + y, self.grid.width, self.grid.height)
         self.frame(axes)

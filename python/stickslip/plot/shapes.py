@@ -122,7 +122,8 @@ def draw_shape(
 def draw_field(
     axes: Axes, results: Result, frame: int, colouring: Colouring, at: Array, bodies: PolyCollection
 ) -> None:
-    """Draws the field in its colours, and a mark where it is largest; `at` holds the positions of the vertices."""
+    """Draws the field in its colours, and a mark where the field is largest; `at` holds the positions of the
+    vertices."""
     drawing, field = results.drawing, colouring.field
     values = field.values(results, frame)
     look: dict[str, Any] = {"cmap": COLOURS, "norm": colouring.norm}

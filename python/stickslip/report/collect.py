@@ -66,7 +66,7 @@ def collect(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
 
 
 def collect_outline(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
-    """Data of a result that is laid over another one: outlines in motion, pressure along surfaces, histories."""
+    """Data of a result that is laid over another result: outlines in motion, pressure along surfaces, histories."""
     with Result(path) as result:
         frames = _chosen(len(result.frames), choice.frames)
         drawing = result.drawing
@@ -277,7 +277,7 @@ def _contact_nodes(result: Result) -> Integers:
 def _surfaces(result: Result) -> list[dict[str, Any]]:
     """Chains of edges between slave nodes: name, nodes and reference arc length.
 
-    A closed chain of edges begins where there is no pressure, so the part under pressure is in one piece. """
+    A closed chain of edges begins where no pressure acts, so the part under pressure is in one piece. """
     slave = np.zeros(len(result.coordinates), dtype=bool)
     most = np.zeros(len(result.coordinates))
     for frame in result.frames:
@@ -431,7 +431,7 @@ def _checks(result: Result) -> list[dict[str, Any]]:
 
 
 def _certificate(result: Result) -> str:
-    """The line of the certificate, or the reason why there is none."""
+    """The line of the certificate, or the reason why there is no certificate."""
     if len(result.cells) * len(result.frames) > CERTIFIED:
         return "not made for a page of this size: stickslip certify makes it"
     try:

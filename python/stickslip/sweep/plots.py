@@ -105,7 +105,7 @@ def _axes(across: str, up: str) -> tuple[Figure, Axes]:
 
 
 def _legend(axes: Axes, by: str, values: list[Any]) -> None:
-    """A legend beside the axes if it is short; else the scale of the colours, if they represent numbers."""
+    """A legend beside the axes, if the legend is short; else the scale of the colours, if they represent numbers."""
     if 1 < len(axes.lines) <= MOST:
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
     elif len(axes.lines) > MOST and not any(isinstance(value, str) for value in values):

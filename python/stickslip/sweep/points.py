@@ -88,7 +88,7 @@ def point_name(values: Point) -> str:
 
 
 def short(value: Value) -> str:
-    """A value with as few digits as distinguish it from all others."""
+    """A value with as few digits as distinguish the value from all other values."""
     if not isinstance(value, float):
         return str(value)
     text = f"{value:.12g}"

@@ -85,7 +85,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// All fields in order, empty ones included.
+    /// All fields in order, including empty fields.
     pub fn fields(self) -> impl Iterator<Item = Text<'a>> {
         Fields::new(self.text).map(move |(start, end)| Text {
             text: self.text.get(start..end).unwrap_or(""),
@@ -93,12 +93,12 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// Field `index`, from 0; `None` where it is blank.
+    /// Field `index`, from 0; `None` if the field is blank.
     pub fn get(self, index: usize) -> Option<Text<'a>> {
         self.fields().nth(index).filter(|field| !field.is_empty())
     }
 
-    /// Place of field `index`, or of the whole line where it is blank.
+    /// Place of field `index`, or of the whole line if this field is blank.
     pub fn span_at(self, index: usize) -> Span {
         self.get(index).map_or(self.span(), |field| field.span)
     }
@@ -119,7 +119,7 @@ impl<'a> Line<'a> {
         self.required(index, what, d)?.real(d)
     }
 
-    /// The number in field `index`, or `default` where it is blank.
+    /// The number in field `index`, or `default` if the field is blank.
     pub fn real_or(self, index: usize, default: f64, d: &mut Diagnostics) -> Option<f64> {
         match self.get(index) {
             Some(field) => field.real(d),
@@ -190,11 +190,11 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Byte ranges of the fields between the commas of a line, without blanks around them; an empty
-/// last field is dropped. Commas between quotation marks do not count.
+/// Byte ranges of the fields between the commas of a line, without blanks around the fields; an empty last field is
+/// dropped. Commas between quotation marks do not count.
 pub(super) struct Fields<'a> {
     text: &'a str,
-    /// Byte where the next field starts; behind the last field it lies beyond the text.
+    /// Byte where the next field starts; behind the last field this byte lies beyond the text.
     start: usize,
 }
 
@@ -233,7 +233,7 @@ impl Iterator for Fields<'_> {
     }
 }
 
-/// The bytes from `start` to `end` without blanks around them.
+/// The bytes from `start` to `end` without blanks at both ends.
 fn trimmed(text: &str, start: usize, end: usize) -> (usize, usize) {
     let bytes = text.as_bytes().get(start..end).unwrap_or_default();
     let blanks = bytes.iter().take_while(|&&byte| byte == b' ').count();

@@ -13,7 +13,7 @@ const LONGEST_NAME: usize = 80;
 /// A field or a parameter's value: its text and its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Text<'a> {
-    /// The text as typed, without blanks around it.
+    /// The text as typed, without blanks at both ends.
     pub text: &'a str,
     /// Place of the text.
     pub span: Span,
@@ -116,7 +116,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Place of the first blanks, if the field is a list of numbers with blanks between them.
+    /// Place of the first blanks, if the field is a list of numbers with blanks between the numbers.
     fn gap_between_numbers(&self) -> Option<Span> {
         let start = self.text.find(char::is_whitespace)?;
         let (before, after) = self.text.split_at(start);

@@ -276,7 +276,7 @@ fn general_smoothing(general: &Contact, model: &Model, lines: &mut DeckWriter) {
     rows.into_iter().for_each(|row| lines.row(row));
 }
 
-/// Writes the circles of a contact pair, and the parameter of its card that names them.
+/// Writes the circles of a contact pair, and the parameter of its card that names these circles.
 fn smoothing(contact: &Contact, model: &Model, lines: &mut DeckWriter) -> Option<String> {
     let circles = match &contact.smoothing {
         Smoothing::Straight => return Some(set("GEOMETRIC CORRECTION", "NONE")),

@@ -1,4 +1,5 @@
-//! Writes initial velocities and steps; the cards of a step change the loads of the step before into those of the step.
+//! Writes initial velocities and steps; the cards of a step change the loads of the step before into the loads of the
+//! step.
 
 use super::lines::{DeckWriter, name, named, number, set};
 use super::model::{Interactions, elements_field, friction, pair_row};
@@ -298,7 +299,7 @@ fn kind_of(support: &Support) -> (Option<Rate>, Option<usize>) {
     }
 }
 
-/// Writes all supports of a step if any of them differs from the step before.
+/// Writes all supports of a step if any support differs from the step before.
 fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &mut DeckWriter) {
     if now == carried {
         return;

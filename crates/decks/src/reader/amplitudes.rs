@@ -24,7 +24,7 @@ impl Amplitudes {
     }
 }
 
-/// Reads all amplitudes, including those in steps.
+/// Reads all amplitudes, including amplitudes in steps.
 pub(crate) fn read(cx: &mut Context) -> Amplitudes {
     let (mut named, mut spans) = (Named::new("amplitude"), Vec::new());
     let deck = cx.deck;
@@ -155,7 +155,7 @@ pub(super) fn are_in_reach(numbers: &[f64]) -> bool {
     numbers.iter().all(|number| number.abs() <= LARGEST)
 }
 
-/// Reports numbers of an amplitude that are too large for computing.
+/// Reports numbers of an amplitude that are too large to be computed with.
 pub(super) fn report_out_of_reach(what: &str, span: Span, cx: &mut Context) {
     let message = format!("{what}: the numbers of an amplitude end at {LARGEST:e}");
     cx.error(Code::AmplitudeTable, span, message)

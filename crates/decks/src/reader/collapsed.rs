@@ -10,7 +10,7 @@ use crate::model::{ElementType, Formulation, Shape};
 pub(super) struct Collapsed {
     /// Type of the triangle.
     pub element_type: ElementType,
-    /// Positions of the nodes of the triangle among those of the quadrilateral.
+    /// Positions of the nodes of the triangle among the nodes of the quadrilateral.
     pub nodes: SmallVec<[usize; 6]>,
     /// The side of no length, counted from 0.
     pub side: usize,
@@ -57,8 +57,8 @@ impl Collapsed {
     }
 }
 
-/// The side of the triangle that is side `side` of a quadrilateral whose side `short` has no length; `None` if both are
-/// the same side.
+/// The side of the triangle that is side `side` of a quadrilateral whose side `short` has no length; `None` if `side`
+/// and `short` are the same side.
 pub(super) fn side_of_triangle(side: usize, short: usize) -> Option<usize> {
     let side = (side + 3 - short) % 4;
     (side < 3).then_some(side)

@@ -187,7 +187,7 @@ fn check_use(row: Line, slave: Found, master: Found, cx: &mut Context) -> Option
     None
 }
 
-/// Keeps the arcs of rigid surfaces if discs may meet them, because nodes meet only the chords.
+/// Keeps the arcs of rigid surfaces if discs may meet them, because slave nodes that are no discs meet only the chords.
 pub(super) fn keep_arcs_for_discs(model: &mut Model) {
     let has_discs = model
         .contacts

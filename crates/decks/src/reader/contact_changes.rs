@@ -100,8 +100,8 @@ impl<'a> ContactHistory<'a> {
         }
     }
 
-    /// The friction under `*CHANGE FRICTION` for the contacts of an interaction; with RESET it is the friction of the
-    /// model.
+    /// The friction under `*CHANGE FRICTION` for the contacts of an interaction; with RESET the result is the friction
+    /// of the model.
     fn change_friction(
         &mut self,
         card: &Card,

@@ -42,7 +42,7 @@ impl<'a> Context<'a> {
         self.deck.incomplete || self.deck.dropped
     }
 
-    /// The result of reading a card; `None` if the card, or reading it, has a reported error.
+    /// The result of reading a card; `None` if an error of the card or of its reading has been reported.
     pub fn sound<T>(
         &mut self,
         card: &Card,
@@ -53,7 +53,7 @@ impl<'a> Context<'a> {
         read.filter(|_| !card.faulty && self.errors() == errors)
     }
 
-    /// Stops the reading if it has been cancelled.
+    /// Stops the reading if the reading has been cancelled.
     pub fn go_on(&self) {
         self.deck.interrupt.end_if_asked();
     }
@@ -80,7 +80,7 @@ impl<'a> Context<'a> {
         Some(&self.deck.instances.get(index)?.placement)
     }
 
-    /// Name of an object of a part as other cards call it: `Instance.name`.
+    /// Name of an object of a part in the form in which other cards call the object: `Instance.name`.
     pub fn of_instance(&self, name: Name, span: Span) -> Name {
         match self.deck.instance_of(span) {
             Some(instance) => instance.name.joined(&name),

@@ -18,7 +18,7 @@ const AT_ONE_PLACE: f64 = 1e-6;
 
 /// A connection of nodes without a rigid body.
 pub(crate) enum Link {
-    /// Both displacements of a node equal those of another node.
+    /// Both displacements of a node equal the displacements of another node.
     Joined { node: usize, to: usize, span: Span },
     /// A hinge: two nodes at one place that belong to different rigid bodies.
     Hinge { nodes: [usize; 2], span: Span },

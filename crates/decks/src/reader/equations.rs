@@ -23,7 +23,8 @@ const LARGEST_RATIO: f64 = 1e50;
 struct Term {
     /// Nodes of the term; the nodes of a set are in the order of their numbers.
     nodes: Vec<usize>,
-    /// Coefficients of the displacements along x and y: one of them is zero unless the instance of the row is turned.
+    /// Coefficients of the displacements along x and y: one coefficient is zero unless the instance of the row is
+    /// turned.
     coefficients: [f64; 2],
     span: Span,
 }
@@ -46,8 +47,8 @@ struct SolvedEquation<'a> {
 /// Equations by the dofs that they eliminate; each equation has one owner.
 type ByDof<'a> = BTreeMap<usize, SolvedEquation<'a>>;
 
-/// Reads all equations with the cards that define them; equations that contain eliminated dofs get the equations of
-/// these dofs substituted.
+/// Reads all equations with the cards that define them; eliminated dofs in an equation are replaced by their own
+/// equations.
 pub(crate) fn read<'a>(
     outline: &Outline,
     targets: Targets<'a>,
@@ -222,9 +223,9 @@ fn solved_for((dof, first): (usize, f64), mut others: Vec<(usize, f64)>) -> Solu
     Ok((dof, others))
 }
 
-/// Solves an equation for one of the two displacements of a node. Earlier equations are substituted, and the
-/// displacement with the larger coefficient is eliminated; if the other displacement depends on this one, the result is
-/// also substituted there.
+/// Solves an equation for one of the two displacements of a node. Earlier equations are substituted into the equation,
+/// and the displacement with the larger coefficient is eliminated; if the other displacement depends on this one, the
+/// result is also substituted in the equation of the other.
 fn solved_at_node(
     own: &[(usize, f64)],
     others: impl Iterator<Item = (usize, f64)>,
@@ -498,8 +499,8 @@ fn substituted<'a>(
     equations.into_values().collect()
 }
 
-/// Reports a displacement that would follow another displacement in a ratio that is too large or too small for
-/// computing.
+/// Reports a displacement that would follow another displacement in a ratio that is too large or too small to be
+/// computed with.
 fn report_ratios(
     dof: usize,
     terms: &[(usize, f64)],

@@ -1,5 +1,5 @@
-//! Formulation of contacts, node to surface or surface to surface, which the reader chooses where the deck leaves it
-//! open. See docs/numerics.md, Faces that lie on each other.
+//! Formulation of contacts, node to surface or surface to surface, which the reader chooses if the deck leaves the
+//! formulation open. See docs/numerics.md, Faces that lie on each other.
 
 use std::cell::LazyCell;
 use std::collections::{HashMap, HashSet};
@@ -14,7 +14,7 @@ use crate::model::{
 use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot, length};
 
 /// Number of faces lying on each other from which on the reader advises against contact pairs in both orders: such a
-/// run takes at least 1.3 times as long as with one order.
+/// run takes at least 1.3 times as long as a run with one order.
 const MANY_LYING: usize = 50;
 
 /// Largest distance of two faces that lie on each other, relative to the longer face.
@@ -29,10 +29,10 @@ const LYING_PART: f64 = 0.1;
 /// Ratio of the segment lengths of two surfaces below which the first surface counts as the finer surface.
 const FINER: f64 = 0.99;
 
-/// Chooses the formulation of a contact for which the deck leaves it open, if nodes of both sides are slaves. Contacts
-/// with faces that lie on other bodies are surface to surface, because the conditions of single nodes depend on each
-/// other where faces lie on each other. Then two pairs of the same surfaces, one in each order, become one pair; so do
-/// two pairs that the deck makes surface to surface.
+/// Chooses the formulation of a contact if the deck leaves the formulation open and nodes of both sides are slaves.
+/// Contacts with faces that lie on other bodies are surface to surface, because the conditions of single nodes depend
+/// on each other where faces lie on each other. Then two pairs of the same surfaces, one in each order, become one
+/// pair; so do two pairs that the deck makes surface to surface.
 pub(super) fn choose(model: &mut Model, cx: &mut Context) {
     warn_of_two_laws(model, cx);
     choose_for_general(model);
@@ -147,7 +147,7 @@ struct BothOrders {
     formulation: ContactFormulation,
     /// Number of faces of either surface that lie on the other surface.
     lying: usize,
-    /// Whether one contact from surface to surface may stand for both.
+    /// Whether one contact from surface to surface may replace both contacts.
     becomes_one: bool,
 }
 
@@ -196,8 +196,8 @@ fn both_orders(model: &Model) -> Vec<BothOrders> {
     both
 }
 
-/// Whether one contact from surface to surface can replace two contacts of the same surfaces: both have the same law,
-/// no node is moved or left out, and the formulation is open or surface to surface.
+/// Whether one contact from surface to surface can replace two contacts of the same surfaces: both contacts have the
+/// same law, no node is moved or left out, and the formulation is open or surface to surface.
 fn may_be_one(pair: [&Contact; 2], model: &Model) -> bool {
     let laws = pair.map(|contact| &contact.interaction);
     let is_of_one_side = laws[0].wear.is_some() || laws[0].heat.is_some();
@@ -260,11 +260,11 @@ struct Place<'a> {
     mesh: &'a Mesh,
     /// Body of every node.
     bodies: &'a [usize],
-    /// For each node, whether it is held in both directions in all steps, by itself or as a part of a rigid body.
+    /// For each node, whether the node is held in both directions in all steps, by itself or as a part of a rigid body.
     held: &'a [bool],
 }
 
-/// For each node, whether it is held in both directions in all steps, by itself or as a part of a rigid body.
+/// For each node, whether the node is held in both directions in all steps, by itself or as a part of a rigid body.
 fn held_nodes(model: &Model) -> Vec<bool> {
     let dofs = prescribed_throughout(&model.steps);
     let is_held = |node: usize| [0, 1].iter().all(|axis| dofs.contains(&(2 * node + axis)));
@@ -276,7 +276,8 @@ fn held_nodes(model: &Model) -> Vec<bool> {
     held
 }
 
-/// Number of the faces that lie on one of `others`, on another body, where at least one of the two faces can move.
+/// Number of the faces that lie on a face of another body in the list `others`, where at least one of the two faces can
+/// move.
 fn lying_faces([faces, others]: [&[[usize; 2]]; 2], place: &Place) -> usize {
     let (x, bodies) = (&place.mesh.coordinates, place.bodies);
     let is_held = |face: [usize; 2]| face.iter().all(|&node| place.held[node]);

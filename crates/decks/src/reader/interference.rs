@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 pub(crate) struct Interferences {
     all: LoadHistory<usize, Interference>,
     operation: Operation,
-    /// For each contact, the last step that gives it an overlap, and whether the row names the surfaces in the order of
-    /// the contact.
+    /// For each contact, the last step that gives the contact an overlap, and whether the row names the surfaces in the
+    /// order of the contact.
     given: BTreeMap<usize, (usize, bool)>,
 }
 

@@ -465,8 +465,8 @@ fn loaded_side(kind: &str) -> Option<(&'static str, usize)> {
     Some((name, side))
 }
 
-/// Smallest cosine of the angle between a face and the direction of a shear: below it the sense of the shear along the
-/// face is undecided.
+/// Smallest cosine of the angle between a face and the direction of a shear: below this cosine the sense of the shear
+/// along the face is undecided.
 const ACROSS: f64 = 1e-3;
 
 /// Largest distance of a node of a straight side from the chord of the side, relative to the length of the chord.
@@ -653,7 +653,7 @@ impl Operation {
 
 /// The loads of one kind by their keys.
 pub(crate) struct LoadHistory<K, T> {
-    /// The first `sorted` loads are in the order of their keys; later ones follow in any order.
+    /// The first `sorted` loads are in the order of their keys; later loads follow in any order.
     parts: Vec<(K, CarriedLoad<T>)>,
     sorted: usize,
 }
@@ -873,7 +873,7 @@ impl<T: Copy> CarriedLoad<T> {
 }
 
 impl<T> CarriedLoad<T> {
-    /// A new load; if loads ramp, it grows from zero to its magnitude.
+    /// A new load; if loads ramp, the load grows from zero to its magnitude.
     pub fn new(
         at: T,
         magnitude: f64,
@@ -898,7 +898,7 @@ impl<T> CarriedLoad<T> {
         }
     }
 
-    /// The same load; if it ramps, it grows from the given magnitude.
+    /// The same load; a load that ramps grows from the given magnitude.
     pub fn rising_from(mut self, from: f64) -> CarriedLoad<T> {
         if let Variation::Ramp { .. } = self.load.variation {
             self.load.variation = Variation::Ramp { from };

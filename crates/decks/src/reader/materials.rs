@@ -497,8 +497,8 @@ fn positive_c10(c10: Text, cx: &mut Context) -> Option<f64> {
     c10.real_that(|c10| c10 > 0.0, rule, Code::MaterialRange, cx.d)
 }
 
-/// Ratio K/mu of a material with D1 = 0. In plane stress, at stretches from 0.5 to 1.5, the force of such a material
-/// differs from the force of an incompressible material by at most 5e-5 of the force.
+/// Ratio K/mu of a material with D1 = 0. In plane stress, at stretches from 0.5 to 1.5, the force of a material with
+/// this ratio differs from the force of an incompressible material by at most 5e-5 of the force.
 const NEARLY_INCOMPRESSIBLE: f64 = 1e4;
 
 /// Reads D1 in field `index` of a material with the shear modulus mu = 2 c; zero means K = 1e4 mu:

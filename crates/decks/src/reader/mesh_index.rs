@@ -24,11 +24,11 @@ pub(crate) struct MeshIndex {
     pub elements: Labels,
     /// Faces of the plane elements that the line elements name.
     pub lines: Vec<Face>,
-    /// Point elements, whose indices follow those of the line elements.
+    /// Point elements, whose indices follow the indices of the line elements.
     pub points: Vec<PointElement>,
     /// Springs and dashpots.
     pub connectors: Vec<ConnectorElement>,
-    /// Rigid lines, whose indices follow those of springs and dashpots.
+    /// Rigid lines, whose indices follow the indices of springs and dashpots.
     pub rigid_lines: Vec<RigidLine>,
     /// Places of the plane elements.
     pub places: Vec<Span>,
@@ -38,7 +38,7 @@ pub(crate) struct MeshIndex {
     pub node_groups: Vec<Group>,
     /// Element sets named on `*ELEMENT`.
     pub element_groups: Vec<Group>,
-    /// Faces on both sides of the cuts of pre-tension sections; only surfaces that name such faces contain them.
+    /// Faces on both sides of the cuts of pre-tension sections; only surfaces that name these faces contain them.
     pub cut_faces: HashSet<Face>,
 }
 

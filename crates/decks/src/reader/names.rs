@@ -111,8 +111,8 @@ impl Names {
         found?
     }
 
-    /// Number of the object that a name means at its place; `Some(None)` if its definition has an error, `None` if it
-    /// is undefined.
+    /// Number of the object that a name means at its place; `Some(None)` if the definition of the name has an error,
+    /// `None` if the name is undefined.
     fn known(&self, text: Text, cx: &Context) -> Option<Option<usize>> {
         let keys = match self.of_parts {
             true => cx.keys_of(text),
@@ -185,7 +185,7 @@ impl Labelled {
         Labelled(index as u32)
     }
 
-    /// The index of the node or element; `None` if it is left out.
+    /// The index of the node or element; `None` if the node or element is left out.
     pub fn index(self) -> Option<usize> {
         (self != Labelled::LEFT_OUT).then_some(self.0 as usize)
     }

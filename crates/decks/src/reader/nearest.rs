@@ -19,7 +19,7 @@ impl NearestLines {
         NearestLines { lines, tree }
     }
 
-    /// Number and distance of the line nearest to a point; of equally near lines, the first one.
+    /// Number and distance of the line nearest to a point; of equally near lines, the first line.
     pub fn of(&self, point: [f64; 2]) -> Option<(usize, f64)> {
         let mut best: Option<(f64, usize)> = None;
         self.tree.visit_near(

@@ -1,7 +1,7 @@
 //! `*NODE` and `*ELEMENT`.
 //!
 //! A line element, such as mesh generators write for boundary curves, names the side of a plane element with the same
-//! nodes; it has no stiffness and no section.
+//! nodes; such an element has no stiffness and no section.
 
 use super::collapsed::Collapsed;
 use super::context::Context;
@@ -486,7 +486,7 @@ fn row_of<'a>(label: u64, outline: &Outline<'a>, cx: &Context) -> Option<Line<'a
 }
 
 /// Fields of the element that starts in row `first`: rows are added until there are `count` fields, or the next row
-/// would give more.
+/// would give too many fields.
 fn element_fields<'a>(
     first: Line<'a>,
     rest: &mut (impl Iterator<Item = Line<'a>> + Clone),
@@ -509,8 +509,8 @@ fn element_fields<'a>(
 pub(super) enum ElementKind {
     /// A plane element.
     Plane(ElementType),
-    /// A line element of two nodes, which name a side of a plane element, or of three nodes, one of them in the middle
-    /// of the side.
+    /// A line element of two nodes, which name a side of a plane element, or of three nodes, the third of which is in
+    /// the middle of the side.
     Line(usize),
     /// A node with mass or inertia.
     PointElement(PointKind),

@@ -4,7 +4,7 @@ use super::context::Context;
 use crate::deck::{Card, Data, Level, Levels, Scope, Status};
 use crate::diagnostics::Code;
 
-/// A model card with the cards that belong to it, such as a material with its constants.
+/// A model card with the cards that belong to this card, such as a material with its constants.
 pub(crate) struct CardBlock<'a> {
     /// The card that begins the block.
     pub head: &'a Card,
@@ -166,7 +166,7 @@ impl<'a> Outline<'a> {
         self.in_model = false;
     }
 
-    /// The block that the last card stands in, if it begins with this keyword.
+    /// The block in which the last card stands, if this block begins with the given keyword.
     fn open_block(&mut self, head: &str) -> Option<&mut CardBlock<'a>> {
         let last = self.model.last_mut().filter(|_| self.in_model);
         last.filter(|block| block.head.keyword.name == head)

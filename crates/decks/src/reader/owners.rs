@@ -1,6 +1,6 @@
-//! A table of all cards that make nodes and displacements follow others; it tells which card decides the motion of a
-//! node. If two cards decide the same displacement, or if a load, support or velocity acts on a displacement that does
-//! not exist, an error names both cards.
+//! A table of all cards that make nodes and displacements follow others; the table tells which card decides the motion
+//! of a node. If two cards decide the same displacement, or if a load, support or velocity acts on a displacement that
+//! does not exist, an error names both cards.
 
 use super::actions::{Action, Actions};
 use super::boundary::Targets;
@@ -14,7 +14,7 @@ use crate::diagnostics::{Added, Code, Span};
 use crate::model::{Connector, ConnectorDirection, ConnectorLaw, Equation, Tie};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Constraints that make nodes follow others, without those of `*EQUATION`.
+/// Constraints that make nodes follow other nodes, except the equations of `*EQUATION`.
 #[derive(Clone, Copy)]
 pub(crate) struct Constraints<'a> {
     pub ties: &'a Ties,
@@ -90,7 +90,7 @@ impl Owner<'_> {
         }
     }
 
-    /// Reports, at the place of this owner, that it contradicts the owner `other`.
+    /// Reports, at the place of an owner, that this owner contradicts the owner `other`.
     pub fn contradicts<'d>(self, other: Owner, message: String, cx: &'d mut Context) -> Added<'d> {
         cx.error(self.code(), self.span(), message)
             .other(other.title(), other.span())

@@ -1,5 +1,5 @@
 //! `*PRE-TENSION SECTION`: a body is cut along a surface, and equations let the two sides of the cut overlap by one
-//! additional displacement; a force tightens this overlap, and a support locks it. See docs/theory/contact.md,
+//! additional displacement; a force tightens this overlap, and a support locks the overlap. See docs/theory/contact.md,
 //! Pre-tension.
 
 use super::context::Context;
@@ -19,7 +19,7 @@ pub(crate) struct Cut {
     pub node: usize,
     /// Direction in which the side of the surface moves: a unit vector that points out of its elements.
     normal: [f64; 2],
-    /// Pairs of a node of the surface and the node of the elements behind it at the same place.
+    /// Pairs of a node of the surface and the node, at the same place, of the elements behind the surface.
     pairs: Vec<[usize; 2]>,
     /// Place of the card.
     pub span: Span,

@@ -168,8 +168,8 @@ fn report_moments(rigid: &Rigid, angle: usize, steps: &[Step], cx: &mut Context)
     }
 }
 
-/// Largest difference between the velocity of a node and the velocity of its body there, relative to the largest
-/// velocity.
+/// Largest difference between the velocity of a node and the velocity of its body at this place, relative to the
+/// largest velocity.
 const SAME_VELOCITY: f64 = 1e-9;
 
 /// Reports velocities of nodes of a body that differ from the motion of its reference node and angle.
@@ -211,7 +211,7 @@ fn report_own_velocities(
 }
 
 /// Completes the supports of a body that turns: if the body has no mass, its angle is held unless the deck prescribes
-/// it.
+/// the angle.
 fn complete_turning(
     rigid: &Rigid,
     angle: usize,

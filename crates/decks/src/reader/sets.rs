@@ -40,7 +40,7 @@ impl Sets {
         self.unsorted.contains(&set)
     }
 
-    /// The node that a field names, or the nodes of the set that it names.
+    /// The node that a field names, or the nodes of the set that the field names.
     pub fn nodes_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         match cx.is_number(field) {
             true => mesh_index.nodes.find(field, cx).into_iter().collect(),
@@ -267,7 +267,7 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
 /// the model).
 type Age = (bool, Option<usize>);
 
-/// A set before the sets that it lists are added.
+/// A set to which the members of listed sets have not been added yet.
 struct Draft {
     span: Span,
     age: Age,

@@ -37,7 +37,7 @@ pub(crate) struct Steps {
     pub forces: Actions,
 }
 
-/// Reads all steps; `guide` is a sensible increment, if it is known.
+/// Reads all steps; `guide` is a sensible increment; `None` if no such increment is known.
 pub(crate) fn read(
     outline: &Outline,
     targets: Targets,
@@ -471,8 +471,9 @@ fn time_or(row: Line, index: usize, default: f64, cx: &mut Context) -> Option<f6
     Some(if time == 0.0 { default } else { time })
 }
 
-/// The first increment of a dynamic step. If the deck does not give this increment and increments are automatic, it is
-/// `guide`, the time of a wave through the shortest side of an element, within bounds relative to the duration.
+/// The first increment of a dynamic step. If the deck does not give this increment and increments are automatic, the
+/// first increment is `guide`, the time of a wave through the shortest side of an element, within bounds relative to
+/// the duration.
 fn first_increment(
     row: Line,
     (direct, period): (bool, f64),
@@ -653,7 +654,7 @@ fn check_scheme(card: &Card, settings: &Settings, cx: &mut Context) {
     }
 }
 
-/// Reads the scheme, whose weights must make it stable: theta2 >= theta1 >= 1/2.
+/// Reads the scheme, whose weights must make the scheme stable: theta2 >= theta1 >= 1/2.
 fn scheme(card: &Card, before: Scheme, cx: &mut Context) -> Scheme {
     let (old1, old2) = match (card.choice("SCHEME"), before) {
         (Some("SS22"), Scheme::EnergyMomentum) => (1.0, 1.0),

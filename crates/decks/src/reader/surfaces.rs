@@ -328,8 +328,7 @@ const CHORD: f64 = std::f64::consts::PI / 180.0;
 /// arc from 180 degrees (rad).
 const ARC_ROUND_OFF: f64 = 1e-4;
 
-/// A rigid profile: points and the sides between them, with the rigid body on the right of each
-/// side.
+/// A rigid profile: points and the sides between these points, with the rigid body on the right of each side.
 #[derive(Default)]
 pub(crate) struct Profile {
     /// Points in the order of the rows.
@@ -537,8 +536,8 @@ impl Profile {
     }
 }
 
-/// Reads the point in the fields `index` and `index + 1` of a row with at most `count` fields, and places it with the
-/// instance of the row.
+/// Reads the point in the fields `index` and `index + 1` of a row with at most `count` fields, and places the point
+/// with the instance of the row.
 fn point(row: Line, index: usize, count: usize, cx: &mut Context) -> Option<[f64; 2]> {
     if index == 1 {
         row.at_most(count, cx.d);

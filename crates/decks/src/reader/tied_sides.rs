@@ -6,11 +6,11 @@ use crate::model::{Follows, Mesh, SideNodes, Surface, SurfaceKind, TiedLine, Tie
 use crate::vectors::{difference, distance, dot};
 use smallvec::SmallVec;
 
-/// Gauss points of a cell, -1 <= r <= 1; each has the weight 1. These points integrate products of two linear functions
-/// and the radius exactly.
+/// Gauss points of a cell, -1 <= r <= 1; each has the weight 1. The Gauss points integrate products of two linear
+/// functions and the radius exactly.
 const GAUSS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
 
-/// Distance of two ends of cells, relative to the length of the line, below which the two are one end.
+/// Distance of two ends of cells, relative to the length of the line, below which the two ends count as one.
 const ROUND_OFF: f64 = 1e-9;
 
 /// Cosine of the largest angle between a slave line and the line of the master that it follows: 45 degrees.

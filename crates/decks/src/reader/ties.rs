@@ -28,8 +28,8 @@ pub(crate) struct Ties {
     pub all: Vec<Tie>,
     /// Places of the ties.
     pub spans: Vec<Span>,
-    /// Nodes of both surfaces, each with the segments to which it is tied or at which it lies; contact between such a
-    /// node and segment is left out.
+    /// Nodes of both surfaces, each with the segments to which the node is tied or at which it lies; contact between
+    /// such a node and segment is left out.
     bonds: Vec<(usize, Segment)>,
 }
 
@@ -162,8 +162,8 @@ fn reach(card: &Card, sets: &Sets, cx: &mut Context) -> Option<TieReach> {
     Some(TieReach::Within(tolerance))
 }
 
-/// Formulation of a tie: node to surface if one of the surfaces is made of nodes or the card asks for it, else surface
-/// to surface.
+/// Formulation of a tie: node to surface if one of the surfaces is made of nodes or the card asks for this formulation,
+/// else surface to surface.
 fn formulation(card: &Card, both: [&Surface; 2], cx: &mut Context) -> ContactFormulation {
     let typed = card.choice("TYPE");
     let has_nodes = both
@@ -209,7 +209,7 @@ fn pair(row: Line, surfaces: &Surfaces, cx: &mut Context) -> Option<(usize, usiz
     None
 }
 
-/// The slave nodes of a row, sorted by whether the row ties them.
+/// The slave nodes of a row, divided into nodes that the row ties and other nodes.
 struct Faced {
     /// Slave nodes that are tied, with their nearest segments, in the order of the surface.
     near: Vec<(usize, Segment)>,
@@ -330,7 +330,7 @@ impl<'a> Nearest<'a> {
         }
     }
 
-    /// The segment nearest to a node; of equally near segments, the first one.
+    /// The segment nearest to a node; of equally near segments, the first segment.
     fn of(&self, node: usize) -> Option<NearestSegment> {
         let (k, off) = self.lines.of(self.x[node])?;
         let segment = self.segments[k];

@@ -63,8 +63,8 @@ pub(super) fn position_round_off(s: [f64; 2]) -> f64 {
 }
 
 /// Rise g0 - h0 of eq. (7.6) (length) for a node at `s` that has slid on to another segment. The rise is the node's gap
-/// at the start to the new segment (of the given length), less the start gap h0 that counts for the node; `before` is
-/// the gap to the old segment. A rise within the round-off of closed gaps and positions is set to zero: divided by the
+/// at the start to the new segment (of the given length) less h0: the smaller of this gap and the gap `before` to the
+/// old segment, but at least 0. A rise within the round-off of closed gaps and positions is set to zero: divided by the
 /// slip of a node that has come back, such a rise would tilt the force at random.
 pub(super) fn rise((gap, length): (f64, f64), before: f64, s: [f64; 2]) -> f64 {
     let rise = gap - gap.min(before).max(0.0);

@@ -35,7 +35,7 @@ pub(super) struct Piece {
     pub value: Option<(String, Spot)>,
 }
 
-/// A keyword line with the lines that continue it.
+/// A keyword line with its continuation lines.
 #[derive(Debug, Clone)]
 pub(super) struct Head {
     /// Place of the keyword with its star.

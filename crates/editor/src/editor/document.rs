@@ -1,6 +1,6 @@
-//! The text of a file that is being edited. The time of a change depends only on the number of lines that it touches:
-//! pieces of the text remember which of their lines are keyword lines or hold words, and only changed pieces are
-//! examined again.
+//! The text of a file that is being edited. The time of a change depends only on the number of lines that the change
+//! touches: pieces of the text remember which of their lines are keyword lines or hold words, and only changed pieces
+//! are examined again.
 
 use crate::deck::{Line, LineKind};
 use crate::diagnostics::FileId;
@@ -63,7 +63,7 @@ impl Document {
         self.rope.clone()
     }
 
-    /// Number of lines; the last one may be empty.
+    /// Number of lines; the last line may be empty.
     pub fn line_count(&self) -> usize {
         self.rope.len_lines()
     }

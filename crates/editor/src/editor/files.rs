@@ -17,7 +17,7 @@ const MOST_NEIGHBOURS: usize = 200;
 /// Largest number of bytes that are read to find a deck that includes a file.
 const MOST_BYTES: u64 = 1 << 28;
 
-/// Number of folders above a file that are searched for a deck that includes it.
+/// Number of folders above a file that are searched for a deck that includes the file.
 const FOLDERS_ABOVE: usize = 2;
 
 /// A file.
@@ -25,7 +25,7 @@ const FOLDERS_ABOVE: usize = 2;
 pub(super) struct File {
     /// Text of the file.
     pub document: Document,
-    /// Address (URI) of the file in the editor, if it is open there.
+    /// Address (URI) of the file in the editor, if the file is open there.
     pub open: Option<Url>,
     /// A number that increases with every change of the file.
     pub revision: u64,
@@ -47,7 +47,7 @@ impl Files {
         self.all.get(path)
     }
 
-    /// A file, which is read from the disk if it is not known; `None` if it cannot be read.
+    /// A file, which is read from the disk if the server does not know it; `None` if the file cannot be read.
     pub fn load(&mut self, path: &Path) -> Option<&File> {
         if !self.all.contains_key(path) {
             let (text, stamp) = read(path)?;

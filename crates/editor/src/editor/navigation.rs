@@ -67,7 +67,7 @@ pub(super) fn references(
         .collect()
 }
 
-/// Range of the name at a place, if it can be renamed.
+/// Range of the name at a place, if the object can be renamed.
 pub(super) fn changeable(workspace: &Workspace, place: &Place) -> Option<Range> {
     let found = place.occurrence().filter(|one| one.is_known)?;
     let location = workspace.location(&place.view, found.file, found.spot)?;

@@ -42,8 +42,8 @@ pub struct Program {
     pub version: &'static str,
 }
 
-/// Serves an editor on standard input and output until the session ends; returns whether it ended with a shutdown
-/// request.
+/// Serves an editor on standard input and output until the session ends; returns whether the session ended with a
+/// shutdown request.
 ///
 /// # Errors
 /// The connection is broken, or a message breaks the protocol.
@@ -125,7 +125,7 @@ struct Server {
     jobs: Sender<Job>,
     /// Main file of the deck that is being checked, and the signal that ends the check.
     running: Option<(PathBuf, Interrupt)>,
-    /// Decks that wait for a check, with the time at which it is due.
+    /// Decks that wait for a check, with the time at which the check is due.
     waiting: BTreeMap<PathBuf, Instant>,
     /// Diagnostics that the editor has, by deck and file.
     shown: HashMap<PathBuf, BTreeMap<PathBuf, Vec<Diagnostic>>>,

@@ -1,5 +1,5 @@
 //! Names of a deck: where each is defined and used. Names are resolved as in the reader: in a part, a name means an
-//! object of the part, or else of the whole deck; outside a part, the name of the instance stands before it.
+//! object of the part, or else of the whole deck; outside a part, the name of the instance stands before the name.
 
 use super::cards::{Card, Cards, Instance, Scope, fields_of, is_first_row, key, spot};
 use super::document::{Document, Spot};
@@ -57,7 +57,7 @@ pub(super) struct Occurrence {
     pub defines: bool,
     /// Whether the name is defined anywhere.
     pub is_known: bool,
-    /// Whether the name stands between quotation marks here.
+    /// Whether the name stands between quotation marks at this place.
     pub is_quoted: bool,
 }
 
@@ -425,7 +425,7 @@ struct Split {
     typed_own: String,
 }
 
-/// A text without quotation marks around it, its place, and whether it had quotation marks.
+/// A text without its quotation marks, the place of the text, and whether it had quotation marks.
 fn unquoted(spot: Spot, text: &str) -> (Spot, String, bool) {
     let inner = text
         .strip_prefix('"')

@@ -52,7 +52,7 @@ impl Place {
 }
 
 impl Workspace {
-    /// Stores a file that the editor has opened, and searches for a deck that includes it.
+    /// Stores a file that the editor has opened, and searches for a deck that includes the file.
     pub fn open(&mut self, uri: &Url, text: &str) -> PathBuf {
         let path = self.files.open(uri, text);
         if self.root_of(&path) == path {
@@ -85,7 +85,7 @@ impl Workspace {
         view
     }
 
-    /// The main file of the deck that a file belongs to; the file itself if no deck includes it.
+    /// The main file of the deck to which a file belongs; the file itself if no deck includes the file.
     pub fn root_of(&mut self, path: &Path) -> PathBuf {
         let mut root = path.to_owned();
         for _ in 0..DEEPEST {

@@ -16,7 +16,7 @@ const LONGEST_TEXT: usize = 1000;
 pub enum Severity {
     /// An error: the deck is rejected.
     Error,
-    /// A warning: the deck is read, but one of its statements is changed or left out.
+    /// A warning: the deck is read, but perhaps not as its author intends.
     Warning,
     /// Worth knowing.
     Note,

@@ -219,7 +219,8 @@ pub struct Keyword {
     pub parameters: &'static [Parameter],
     /// Sentences that say what the keyword does.
     pub text: &'static str,
-    /// Lines of a deck that use the keyword, or that replace it if it is not read; empty if there are none.
+    /// Lines of a deck that use the keyword, or that replace a keyword that is not read; empty if there are no such
+    /// lines.
     pub example: &'static str,
     /// Whether the keyword asks for output: unknown parts of such a card are left out, because these parts do not
     /// change the results.
@@ -268,7 +269,7 @@ impl Keyword {
 pub enum Status {
     /// The program reads and obeys the keyword, parameter or value.
     Read,
-    /// The program leaves the keyword, parameter or value out silently, because it does not affect the results.
+    /// The program leaves the keyword, parameter or value out silently, because this does not affect the results.
     Ignored,
     /// The program leaves the keyword, parameter or value out, or replaces it, with a warning.
     Warned,
@@ -287,7 +288,7 @@ pub enum Takes {
     Optional,
     /// The value is one of these words.
     Choice(&'static [Value]),
-    /// The value is one of these words, or it is left out.
+    /// The value is one of these words, or the value is left out.
     OptionalChoice(&'static [Value]),
 }
 
@@ -298,7 +299,7 @@ pub struct Value {
     pub name: &'static str,
     /// Treatment of the word by the program.
     pub status: Status,
-    /// One sentence about the word; empty where the word explains itself.
+    /// One sentence about the word; empty if the word explains itself.
     pub text: &'static str,
 }
 
@@ -314,7 +315,7 @@ impl Value {
 pub struct Parameter {
     /// The word before the equals sign, with blanks.
     pub name: &'static str,
-    /// A second name of the parameter; empty if there is none.
+    /// A second name of the parameter; empty if the parameter has no second name.
     pub other: &'static str,
     /// Values of the parameter.
     pub takes: Takes,
@@ -361,7 +362,7 @@ pub enum Quantity {
     New(Kind),
     /// The path of a file; the card reads the file.
     File,
-    /// A number whose dimension is not known: other codes disagree on it.
+    /// A number whose dimension is not known: other codes disagree on the dimension.
     Unknown,
 }
 

@@ -22,7 +22,7 @@ pub struct Word {
     pub names: Vec<&'static str>,
     /// Sentence that says whether the program does the task, and which cards to use.
     pub text: &'static str,
-    /// Lines of a deck that do the task; empty if there are none.
+    /// Lines of a deck that do the task; empty if there are no such lines.
     pub example: String,
 }
 
@@ -61,7 +61,7 @@ fn entry(lines: &[&'static str]) -> Word {
 }
 
 impl Word {
-    /// Text of an entry for the screen: the words, the sentence about them, and an example.
+    /// Text of an entry for the screen: the words, the sentence about these words, and an example.
     pub fn explanation(&self) -> String {
         let names = wrapped(&self.names.join(", "), 2);
         let mut text = format!("{names}\n{}", wrapped(self.text, 0));

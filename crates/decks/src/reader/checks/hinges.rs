@@ -11,9 +11,9 @@ use crate::vectors::{difference, length};
 /// earlier rows. The square of this size is the bound below which a run counts an eigenvalue as zero.
 const FOLLOWS: f64 = 1e-6;
 
-/// Reports hinges whose rows of C in eq. (11.8) follow from the rows before them and the supports of a step: with such
-/// hinges the step would stop. A row whose two nodes are held alike by supports has no effect and is not checked.
-/// `spans` holds the places of the hinges.
+/// Reports hinges whose rows of C in eq. (11.8) follow from earlier rows and the supports of a step: with such hinges
+/// the step would stop. A row whose two nodes are held alike by supports has no effect and is not checked. `spans`
+/// holds the places of the hinges.
 pub(crate) fn hinges(model: &Model, spans: &[Span], cx: &mut Context) {
     for (number, step) in model.steps.iter().enumerate() {
         let mut independent: Vec<DVector<f64>> = Vec::new();

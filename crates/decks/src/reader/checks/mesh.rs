@@ -223,8 +223,8 @@ pub(super) fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
         .help("choose units in which the numbers of the deck are not so extreme");
 }
 
-/// Distance, relative to the shortest element side, below which two nodes lie at the same place; it corresponds to the
-/// digits that mesh generators write.
+/// Distance, relative to the shortest element side, below which two nodes lie at the same place; the value corresponds
+/// to the number of digits that mesh generators write.
 const SAME_PLACE: f64 = 1e-6;
 
 /// Largest absolute value up to which a whole number keeps its value as an integer.
@@ -331,7 +331,7 @@ struct Grid {
     cell: f64,
     /// Last node in the cells of every key; several cells may share a key.
     last: Vec<u32>,
-    /// For every node, the node that was added before it under the same key.
+    /// For every node, the node that was added before this node under the same key.
     before: Vec<u32>,
 }
 
@@ -369,7 +369,7 @@ impl Grid {
     }
 
     /// Numbers of the column or row of cells that holds a coordinate, and of the neighbouring column or row if the line
-    /// between the two is near.
+    /// between the two columns or rows is near.
     fn cells(&self, x: f64) -> [u64; 2] {
         // The grid is shifted so that the nodes of regular meshes lie off its lines.
         let at = x / self.cell + 0.37;

@@ -190,7 +190,7 @@ pub(crate) fn braked_flight(model: &Model, places: &[MaterialPlaces], cx: &mut C
     }
 }
 
-/// For every body, whether it has a node with a support or an equation in all steps.
+/// For every body, whether the body has a node with a support or an equation in all steps.
 fn held_in_all_steps(model: &Model, bodies: &Bodies) -> Vec<bool> {
     let mut is_held = vec![true; bodies.count];
     let tied: Vec<usize> = model.equations.iter().flat_map(Equation::dofs).collect();

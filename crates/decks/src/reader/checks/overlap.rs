@@ -4,7 +4,7 @@
 //! Where elements lie over each other, the boundary of a body meets the boundary of another body or itself, or one body
 //! lies completely inside another. Where two boundaries meet, an element with an exterior side at this place overlaps
 //! an element with an exterior node. A loop of the boundary that meets no other loop lies inside as many elements as
-//! there are turns of other loops around it.
+//! other loops make turns around this loop.
 
 use crate::diagnostics::{Code, Span};
 use crate::model::{ALL_EXTERIOR, Contact, ElementsAtNodes, Face, Mesh, Model};
@@ -105,7 +105,7 @@ impl Acting {
 }
 
 /// Pairs of elements that lie over each other, with the smaller index first: all pairs at places where boundaries of
-/// bodies meet; if there are none, one pair for a body inside another.
+/// bodies meet; without such places, one pair for a body inside another body.
 fn overlapping(mesh: &Mesh) -> Vec<[usize; 2]> {
     let at_nodes = ElementsAtNodes::new(mesh);
     let (exterior, mut pairs) = exterior(mesh, &at_nodes);

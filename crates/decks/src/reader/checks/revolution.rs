@@ -1,5 +1,5 @@
-//! Checks of bodies of revolution: all elements must be rings and lie on one side of the axis, and nodes on the axis
-//! must be held on it. See docs/theory/elements.md, Bodies of revolution.
+//! Checks of bodies of revolution: all elements must be rings and lie on one side of the axis, and supports must hold
+//! nodes of the axis on the axis. See docs/theory/elements.md, Bodies of revolution.
 
 use std::collections::BTreeSet;
 
