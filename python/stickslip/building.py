@@ -65,7 +65,8 @@ class Building(ABC):
         In bodies of revolution x is the radius and y goes along the axis. `formulation` is a word of FORMULATIONS;
         elements of a shape without such a type, for example triangles, get their type without a formulation. The nodes
         of an element set become a node set of the same name. Returns the number of its first node; the node with index
-        i of the mesh has this number plus i. A second mesh continues the numbers of the first mesh. """
+        i of the mesh has this number plus i. A second mesh continues the numbers of the first mesh.
+        """
         ends = element_types(plane, formulation)
         node, element = self._next_number("NODE"), self._next_number("ELEMENT")
         self.add("NODE", *((node + at, *map(float, place)) for at, place in enumerate(mesh.points)))
@@ -114,8 +115,8 @@ class Building(ABC):
         return self.extend(material(name, young, poisson, density, "", **damping))
 
     def hencky(self, name: str, young: float, poisson: float, density: float, **damping: float) -> Self:
-        """Appends Hencky's material, for large strains: Kirchhoff stress proportional to logarithmic strain; with the
-        damping `alpha` and `beta`."""
+        """Appends Hencky's material, for large strains: Kirchhoff stress proportional to logarithmic strain; the
+        damping has the factors `alpha` and `beta`."""
         return self.extend(material(name, young, poisson, density, "HENCKY", **damping))
 
     def plastic(
@@ -227,7 +228,8 @@ class Building(ABC):
         body, which turns and can carry moments.
 
         With `distributing`, the displacement of the reference node is the mean displacement of the surface nodes, and
-        forces on the reference node are distributed to these nodes in equal parts. """
+        forces on the reference node are distributed to these nodes in equal parts.
+        """
         head = f"COUPLING, CONSTRAINT NAME={name}, REF NODE={reference}, SURFACE={surface}"
         return self.add(head).add("DISTRIBUTING" if distributing else "KINEMATIC")
 
@@ -236,7 +238,8 @@ class Building(ABC):
 
         In steps, direction 1 of the node (see `node`) is the overlap of the two sides of the cut: `load` gives the
         force of the bolt (tension is positive), and `support` prescribes the overlap. `normal` is the normal of the
-        section; the default is the mean normal of the faces. """
+        section; the default is the mean normal of the faces.
+        """
         if normal == (0.0, 0.0):
             raise Fault(f"{surface}: the normal of the section has no length")
         rows = [] if normal is None else [(*map(float, normal), 0.0)]
@@ -247,7 +250,8 @@ class Building(ABC):
         factor.
 
         The displacement of the first term follows from the displacements of the other terms. Node sets give an equation
-        for every node. """
+        for every node.
+        """
         if len(terms) < 2:
             raise Fault("an equation has two terms or more")
         for node, direction, factor in terms:
@@ -262,13 +266,15 @@ class Building(ABC):
         """Appends a spring between two nodes, given by their numbers, along the line between these nodes.
 
         `law` is the stiffness of the spring, or pairs of force and elongation with increasing elongation; beyond the
-        pairs the force is constant. """
+        pairs the force is constant.
+        """
         return self._connect("SPRINGA", "SPRING", (first, second), law)
 
     def dashpot(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
         """Appends a dashpot between two nodes, given by their numbers, along the line between these nodes.
 
-        `law` is the coefficient of the dashpot, or pairs of force and rate of elongation with increasing rate. """
+        `law` is the coefficient of the dashpot, or pairs of force and rate of elongation with increasing rate.
+        """
         return self._connect("DASHPOTA", "DASHPOT", (first, second), law)
 
     def _connect(

@@ -213,7 +213,8 @@ def _read_input(
 ) -> None:
     """Replaces INPUT= of the last line, a keyword line, by the lines of the file that it names.
 
-    A file name that contains a parameter without value stays as it is. """
+    A file name that contains a parameter without value stays as it is.
+    """
     if not lines or not lines[-1].startswith("*"):
         return
     head = fields(lines[-1])

@@ -160,7 +160,8 @@ class GridMesh:
     """Any quadrilaterals, with nodes and elements by their indices; labels are consecutive.
 
     This class writes its cards itself, with labels from a first node and element on; `mesh.Mesh` is for decks that are
-    made of arrays. """
+    made of arrays.
+    """
 
     def __init__(
         self,
@@ -251,7 +252,8 @@ def disc(
 ) -> GridMesh:
     """A disc, turned by an angle: a bulging square of side x side elements, with rings around the square.
 
-    The rim of the disc has 4 `side` nodes. """
+    The rim of the disc has 4 `side` nodes.
+    """
     core = 0.55 * radius
     flat = [(2 * i / side - 1, 2 * j / side - 1) for j in range(side + 1) for i in range(side + 1)]
     nodes = []

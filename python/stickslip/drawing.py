@@ -1,7 +1,8 @@
 """The mesh for drawing: vertices, outlines of elements with curved sides, and triangles that fill them.
 
 Vertices are the places of `nodal`, and three more points on each half of a side of a quadratic element, which lie on
-the parabola through its corners and the node between them. """
+the parabola through its corners and the node between them.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property

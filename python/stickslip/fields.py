@@ -2,7 +2,8 @@
 
 A name is the name in the result file, a name of Abaqus, or a word: `CONTACT_PRESSURE`, `CPRESS` and `contact-pressure`
 name the same field, and `S:1`, `S:xx` and `S11` the same component. A component stands after a colon, or a number made
-of several components: `U:magnitude`, `S:max`. Capitals in names do not matter. """
+of several components: `U:magnitude`, `S:max`. Capitals in names do not matter.
+"""
 
 from collections.abc import Callable, Container, Iterable
 from dataclasses import dataclass

@@ -40,7 +40,8 @@ class Frame(Mapping[str, Any]):
 
     Vectors lose their third component, which is 0. Stresses and strains are means over the elements, (xx, yy, xy).
     Values at nodes, `frame["S_AT_NODES"]` [N, 3], have the same components. Components have names, such as
-    `frame["S11"]` [E] (see `fields`). """
+    `frame["S11"]` [E] (see `fields`).
+    """
 
     frames: "Frames"
     index: int
@@ -85,7 +86,8 @@ class Frame(Mapping[str, Any]):
         materials.
 
         Invariants of stresses are computed from the stresses at the places. If the program has written a field at nodes
-        (`POSITION=NODES`), these values are used at nodes of one material. """
+        (`POSITION=NODES`), these values are used at nodes of one material.
+        """
         spelled = self.frames.known(name)
         field, colon, _ = spelled.partition(":")
         recovery = self.result.recovery

@@ -3,7 +3,8 @@ nodes.
 
 The columns follow the manual of CalculiX GraphiX, section "Result Format". Numbers in the file have six digits.
 Stresses are averaged at nodes within a body and a material (see `nodal`); a node between two materials gets only the
-value of one material. Segments of rigid surfaces are beams of two nodes. """
+value of one material. Segments of rigid surfaces are beams of two nodes.
+"""
 
 from collections.abc import Iterable, Iterator
 

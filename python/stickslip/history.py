@@ -1,7 +1,8 @@
 """Histories of a result, with one row per increment; row 0 is the start (docs/output.md, /history).
 
 A group reads a dataset when the dataset is accessed, `group.name` or `group["name"]`, up to the last complete row.
-Every result has the names that the classes annotate; a result may have more. """
+Every result has the names that the classes annotate; a result may have more.
+"""
 
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar

@@ -111,7 +111,8 @@ class Mesh:
         physical groups.
 
         Sets of lines become sides; the nodes of the lines become node sets. If there are no sets of elements, all
-        elements form the set ALL. Nodes that belong to no element are left out. """
+        elements form the set ALL. Nodes that belong to no element are left out.
+        """
         blocks = [(block.type, np.asarray(block.data)) for block in mesh.cells]
         groups: dict[str, list[Integers]] = {
             name: [np.asarray(rows, dtype=np.int64) for rows in of_blocks]

@@ -3,7 +3,8 @@
 The value at a corner comes from a plane, which is fitted with weights 1/distance^4 to the means at the centres of the
 elements at the corner and of their neighbours. Inside a body the recovered value is almost the plain mean; at the
 surface it is a linear extrapolation. A linear field is recovered exactly at every node. A node between two corners has
-the mean of the values at the corners. """
+the mean of the values at the corners.
+"""
 
 from dataclasses import dataclass
 

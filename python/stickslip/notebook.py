@@ -1,7 +1,8 @@
 """Support of notebooks: a test whether Python runs in a notebook, display of results, and a bar that shows the progress
 of a run.
 
-The module uses IPython if it is installed. """
+The module uses IPython if it is installed.
+"""
 
 import html
 import sys

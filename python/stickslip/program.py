@@ -156,7 +156,8 @@ def run(
     holds further options as they are typed on the command line. `parameters` gives values of parameters of the deck,
     which replace the values of its `*PARAMETER` cards. `progress` is True to show the progress of the run (as a bar in
     a notebook), or a function that is called with a `Progress` several times a second. A failed run raises
-    DeckRejected, RunStopped or RunFailed. """
+    DeckRejected, RunStopped or RunFailed.
+    """
     folder = Path(output)
     values = dict(parameters or {})
     try:

@@ -8,7 +8,8 @@ number also work if a result has only sums and means of a set (`TOTALS=ONLY`). V
 `elements/BLOCK/points[7.2]/S:1`, have the element and the number of the point in brackets; springs and dashpots,
 `connectors[9]/force`, have their element, and hinges, `hinges[3-4]/force:1`, their two nodes. In histories of bodies,
 `bodies/velocity[0]:1`, the number in brackets is the number of the body. Names of Abaqus are also allowed:
-`nodes/TIP/U2` and `elements/BLOCK/S11` (see `fields`). """
+`nodes/TIP/U2` and `elements/BLOCK/S11` (see `fields`).
+"""
 
 import re
 from dataclasses import dataclass
@@ -89,7 +90,8 @@ def force_against_displacement(result: ResultFile) -> list[tuple[str, str]]:
     """Names of the displacements of rigid surfaces and node sets that a force moves, and of the forces in the same
     directions.
 
-    The displacement whose force does the largest work comes first. """
+    The displacement whose force does the largest work comes first.
+    """
     places = {re.sub(r"(/mean|/sum)?/[^/]*$", "", path) for path in result.histories}
     works: dict[tuple[str, str], float] = {}
     for place in sorted(place for place in places if re.fullmatch("(rigid|nodes)/[^/]+", place)):

@@ -1,6 +1,7 @@
 """Summaries of results and decks with a small picture, which notebooks show, and the report page in a frame.
 
-Packages with a long import time are imported only when they are needed; matplotlib is used if it is installed. """
+Packages with a long import time are imported only when they are needed; matplotlib is used if it is installed.
+"""
 
 import base64
 import html

@@ -1,6 +1,7 @@
 """A check of the certificate: the worst value of a quantity, compared with its bound.
 
-Values are rounded up and bounds down, also in the digits that are shown. """
+Values are rounded up and bounds down, also in the digits that are shown.
+"""
 
 from dataclasses import dataclass, field
 from decimal import ROUND_UP, Context

@@ -221,7 +221,8 @@ def places(x: Array, way: Array, nodes: Integers, contact: Contact) -> Iterator[
     """Yields the positions of nodes relative to segments, some nodes at a time; a segment that ends in a node counts as
     infinitely far from this node.
 
-    `way` [N] holds the distances by which nodes have moved in the increment. """
+    `way` [N] holds the distances by which nodes have moved in the increment.
+    """
     segments = contact.segments
     if len(segments) == 0:
         return
@@ -309,7 +310,8 @@ def corner_error(
     The node must be in front of neither segment, or in front of one segment by no more than its way in the increment.
     If the normal lies between the normals of the segments i and j, the gap lies between g_i and g_j, or reaches up to
     the distance from the corner if the node is in front of neither segment. The second returned value holds the nodes
-    of both segments. """
+    of both segments.
+    """
     before, after = contact.segments[:, 1], contact.segments[:, 0]
     corners = np.setdiff1d(np.intersect1d(before, after), [node])
     if len(corners) == 0:

@@ -450,7 +450,8 @@ class Means:
 
         Closed vertices of slave and master have forces of their own, in any direction. If the forces of closed vertices
         and of mean gaps do not explain the nodal forces, all corners get forces. Forces of mean gaps that would change
-        with the forces of vertices count as not determined. """
+        with the forces of vertices count as not determined.
+        """
         rows: dict[tuple[int, int], dict[int, float]] = {}
         own: set[int] = set()
         for k, mean in enumerate(means):

@@ -189,7 +189,8 @@ def crossings(
 
     The depth of a crossing is the smallest distance of one of the four ends from the other edge, relative to the length
     of this other edge. Edges with a common vertex do not cross; `vertices` gives the vertex number of each node. For
-    curved edges, the curve and not its chord decides on which side a point lies. """
+    curved edges, the curve and not its chord decides on which side a point lies.
+    """
     a, b = position[one.nodes], position[one.after]
     c, d = position[two.nodes], position[two.after]
     low = (np.minimum(a, b)[:, None] < np.maximum(c, d)[None]).all(axis=2)

@@ -76,7 +76,8 @@ def winding(point: Array, start: Array, end: Array, counted: Flags) -> Integers:
     """Winding number of edges around points, from the crossings of a ray to the right of each point.
 
     `counted` [points, edges] says which edges count for each point. For a point on an edge, the result is the winding
-    number of either side. """
+    number of either side.
+    """
     y, low, high = point[:, None, 1], start[None, :, 1], end[None, :, 1]
     up, down = (low <= y) & (y < high), (high <= y) & (y < low)
     right = np.maximum(start[:, 0], end[:, 0])[None] > point[:, None, 0]
@@ -91,7 +92,8 @@ def winding(point: Array, start: Array, end: Array, counted: Flags) -> Integers:
 def ray_starts_inside(point: Array, before: Array, after: Array) -> Flags:
     """Whether the ray to the right of a node of an outline starts inside the body.
 
-    The ray is turned infinitesimally upwards: its direction is (1, 0+). """
+    The ray is turned infinitesimally upwards: its direction is (1, 0+).
+    """
     one, two = after - point, before - point
 
     def rising(direction: Array) -> Flags:
@@ -143,7 +145,8 @@ def closed_hollow(point: Array, before: Array, after: Array) -> Array:
     """Overlap of the legs of closed concave corners; infinite at other nodes.
 
     At a concave corner whose legs lie on each other, the angle is zero up to round-off. If round-off makes the angle
-    negative, the body covers the node itself a second time, although the node is far from all other edges. """
+    negative, the body covers the node itself a second time, although the node is far from all other edges.
+    """
     one, two = before - point, after - point
     lengths = np.linalg.norm(one, axis=1), np.linalg.norm(two, axis=1)
     area = np.abs(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])

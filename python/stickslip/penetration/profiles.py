@@ -4,7 +4,8 @@ A profile is a chain of segments with the obstacle on the left of the direction 
 boundary of a region, and winding numbers tell inside from outside. An open profile bounds no region. A node is inside
 if it lies on the left of the nearest place of the profile, and if the outline of its body crosses the profile to reach
 the node, or the whole body has passed through the profile since the last frame. A node that has come around the ends of
-an open profile is not inside. """
+an open profile is not inside.
+"""
 
 from dataclasses import dataclass
 
@@ -70,7 +71,8 @@ def crossings(start: Array, end: Array, first: Array, second: Array) -> Integers
     their left.
 
     A crossing in the other direction (from left to right) counts -1. A point that is on the left of a segment by less
-    than LIMIT times the path touches the segment, and counts as in front of the segment. """
+    than LIMIT times the path touches the segment, and counts as in front of the segment.
+    """
     low = (np.minimum(start, end)[:, None] <= np.maximum(first, second)[None]).all(axis=2)
     high = (np.maximum(start, end)[:, None] >= np.minimum(first, second)[None]).all(axis=2)
     rows, columns = np.nonzero(low & high)

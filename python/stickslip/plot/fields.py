@@ -99,7 +99,8 @@ class Colouring:
 
         Frames with values far above the values of other frames do not determine the ends of the scale, because they
         would make all other frames dark. Values beyond an end of the scale have the colour of the end, and the label
-        gives the largest value. """
+        gives the largest value.
+        """
         finite = [values[np.isfinite(values)] for values in (field.values(*each) for each in shown)]
         least = np.array([min(0.0, float(values.min(initial=0.0))) for values in finite])
         most = np.array([max(0.0, float(values.max(initial=0.0))) for values in finite])

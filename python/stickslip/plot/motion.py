@@ -3,7 +3,8 @@
 Each time has its own panel, or, with --overlay, all times of a result share one panel. Several results are arranged
 below each other, with the same limits and the same colours. Slave nodes in contact have filled marks if they stick, and
 hollow marks if they slide. Without -o the picture is written next to the first result, as JOB_motion.png; --animation
-alone writes no picture. """
+alone writes no picture.
+"""
 
 import argparse
 import shutil
@@ -92,7 +93,8 @@ def panels(rows: Sequence[Sequence[Shown]], look: Look, columns: int | None = No
     """A page with a panel for each frame.
 
     Panels of a single row are arranged so that they fill the page best, or in `columns`; if there are several rows,
-    each row begins a new line of panels. """
+    each row begins a new line of panels.
+    """
     shown = [each for row in rows for each in row]
     if len(shown) > MOST:
         raise Fault(f"{len(shown)} panels find no room on a page: {MOST} at most")
@@ -235,7 +237,8 @@ def chosen_times(results: Result, times: list[float] | None, interval: float | N
     """The given times, or multiples of an interval, or times that represent the whole run.
 
     The representative times are the start, the ends of the steps and the time of the largest value of the field;
-    further times between these are added, up to six times. """
+    further times between these are added, up to six times.
+    """
     if times:
         return np.array(times)
     every = results.frames.times

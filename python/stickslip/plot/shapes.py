@@ -155,7 +155,8 @@ def mesh_line(axes: Axes, results: Result) -> float:
     """Width of the lines of the mesh in points: at most a thirtieth of an edge; if such lines are too thin, no lines
     are drawn.
 
-    Thicker lines in a fine mesh would hide the colours of the elements. """
+    Thicker lines in a fine mesh would hide the colours of the elements.
+    """
     left, right = axes.get_xlim()
     figure = cast(Figure, axes.figure)
     across = axes.get_position().width * figure.get_size_inches()[0] * POINTS_PER_INCH

@@ -277,7 +277,8 @@ def _contact_nodes(result: Result) -> Integers:
 def _surfaces(result: Result) -> list[dict[str, Any]]:
     """Chains of edges between slave nodes: name, nodes and reference arc length.
 
-    A closed chain of edges begins where no pressure acts, so the part under pressure is in one piece. """
+    A closed chain of edges begins where no pressure acts, so the part under pressure is in one piece.
+    """
     slave = np.zeros(len(result.coordinates), dtype=bool)
     most = np.zeros(len(result.coordinates))
     for frame in result.frames:

@@ -7,7 +7,8 @@ lead from values to whole numbers:
 * `linear`: the value is v = step q; the error is at most step/2;
 * `curved`: the value is v = small sinh(fine q); the error is about fine/2 times the value, or times `small` if `small`
   is larger;
-* `bits`: q is the bit pattern of the value v as a float32. """
+* `bits`: q is the bit pattern of the value v as a float32.
+"""
 
 import base64
 import zlib

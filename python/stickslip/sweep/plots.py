@@ -72,7 +72,8 @@ def against(
     """A picture of a number against a parameter, with one line for each combination of the other parameters, coloured
     by one of these parameters.
 
-    Points that do not lie on a lattice are not joined by lines. The result is None if no point has the number. """
+    Points that do not lie on a lattice are not joined by lines. The result is None if no point has the number.
+    """
     if np.isnan(table.column(str(quantity))).all():
         return None
     figure, axes = _axes(name, str(quantity))

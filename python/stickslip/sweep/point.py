@@ -1,7 +1,8 @@
 """One point of a study, as a worker of the cluster runs it.
 
 A point has a folder whose name gives its values. A run has its own folder, which gets the name of the point when the
-run has ended. So files of a killed worker are never mistaken for a result. """
+run has ended. So files of a killed worker are never mistaken for a result.
+"""
 
 import glob
 import hashlib

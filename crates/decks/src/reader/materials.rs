@@ -467,7 +467,7 @@ fn ogden_rows(rows: &[Line], terms: usize, cx: &mut Context) -> Option<Law> {
     Some(Law::Ogden(law))
 }
 
-/// D2 or D3; zero if the field is empty.
+/// Constant D2 or D3; zero if the field is empty.
 fn higher_d(row: Line, index: usize, cx: &mut Context) -> Option<f64> {
     let rule = "D2 and D3 must not be negative; 0 is none";
     let field = row.get(index).filter(|field| !field.text.is_empty());

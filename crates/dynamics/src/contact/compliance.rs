@@ -23,7 +23,7 @@ use crate::linear::{CheckedSolver, LinearError, Rotation, Transformation};
 /// other normals needs no further solves.
 #[derive(Debug)]
 pub struct Compliance {
-    /// T: dependence of the dofs on the unknowns.
+    /// The map T: dependence of the dofs on the unknowns.
     map: Transformation,
     /// Rotation R of the bodies since the matrix was factorised.
     rotation: Rotation,
@@ -230,7 +230,7 @@ impl Compliance {
         Ok(())
     }
 
-    /// T: dependence of the dofs on the unknowns.
+    /// The map T: dependence of the dofs on the unknowns.
     pub fn map(&self) -> &Transformation {
         &self.map
     }
@@ -462,8 +462,9 @@ impl Responses {
         }
     }
 
-    /// (B_l T) Y of eq. (5.1), Y being the rows: gaps and slips of the constraints under a unit normal and a unit
-    /// tangential force of l. With `adds` the result is added to the sums, otherwise the result replaces the sums.
+    /// Products (B_l T) Y of eq. (5.1) with the rows Y: gaps and slips of the constraints under a unit normal and a
+    /// unit tangential force of the constraint l. With `adds` the result is added to the sums, otherwise the result
+    /// replaces the sums.
     #[inline(always)]
     pub fn product<S: Simd>(&self, simd: S, l: &[UnknownEntry], sums: [&mut [f64]; 2], adds: bool) {
         let terms = Terms {

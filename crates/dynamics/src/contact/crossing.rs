@@ -143,9 +143,9 @@ fn direction(zero: Zero) -> CrossingSense {
 
 /// Motion of the node and of the end b relative to the end a, as coefficients of the powers of t/dt.
 struct Relative {
-    /// r = x_s - x_a
+    /// Vector r = x_s - x_a from the end a to the node
     r: [[f64; 2]; 3],
-    /// e = x_b - x_a
+    /// Vector e = x_b - x_a of the segment
     e: [[f64; 2]; 3],
 }
 
@@ -168,7 +168,7 @@ impl Relative {
         }
     }
 
-    /// r x e, eq. (10.5)
+    /// Cross product r x e, eq. (10.5)
     fn cross(&self) -> Quartic {
         self.product(cross)
     }

@@ -33,8 +33,8 @@ impl DelassusSpace {
 /// The complementarity problem of some constraints with the given constant terms of gap and slip:
 /// Q = G W B^T, eq. (5.1), with the compliance W, derivative rows G and force rows B.
 ///
-/// Every constraint must have been prepared in the scope of the compliance. Q is symmetric where G = B, unless bodies
-/// turn: the rows of T for a turning body differ between gaps and forces, eq. (11.3).
+/// Every constraint must have been prepared in the scope of the compliance. The operator Q is symmetric where G = B,
+/// unless bodies turn: the rows of T for a turning body differ between gaps and forces, eq. (11.3).
 pub fn frictional_lcp(
     constraints: &[&Constraint],
     (compliance, scope): (&Compliance, &ConstraintGroup),
@@ -66,8 +66,8 @@ const PANEL: usize = 128;
 const PIECE: usize = 16;
 const THREADS: usize = 64;
 
-/// Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential rows and columns. Q is a sum over the
-/// groups of unknowns; a group couples the constraints that act on it.
+/// The operator Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential rows and columns. The
+/// operator Q is a sum over the groups of unknowns; a group couples the constraints that act on it.
 fn delassus(
     constraints: &[&Constraint],
     compliance: &Compliance,
@@ -121,7 +121,7 @@ fn is_worth_threads(constraints: usize) -> bool {
     constraints >= THREADS && rayon::current_num_threads() > 1
 }
 
-/// Y = W (G T)^T of the members of a group, panel by panel.
+/// Responses Y = W (G T)^T of the constraints that act on a group, panel by panel.
 fn set_responses(members: &[Member], inverse: (&[f64], usize), responses: &mut Vec<Responses>) {
     let panels = members.chunks(PANEL).len();
     responses.resize_with(panels.max(responses.len()), Responses::default);

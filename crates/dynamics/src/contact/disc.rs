@@ -154,7 +154,7 @@ impl Finder<'_> {
 type Map = SMatrix<f64, 2, 8>;
 type DiscRow = SVector<f64, 8>;
 
-/// J, the rotation by a right angle to the left.
+/// The rotation J by a right angle to the left.
 const J: Matrix2<f64> = Matrix2::new(0.0, -1.0, 1.0, 0.0);
 
 /// Positions of the nodes of a disc constraint at the start and at the end: the centre s, the node that turns with the

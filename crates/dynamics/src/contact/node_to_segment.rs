@@ -241,7 +241,7 @@ fn end_rows(
     (force, derivative)
 }
 
-/// D/l = (e_n at b, -e_n at a)/l: the couple of the end rows for a force at unit height.
+/// Couple D/l = (e_n at b, -e_n at a)/l of the end rows for a force at unit height.
 pub(super) fn couple(p: &Projection) -> [f64; 6] {
     nodal([0.0; 2], p.normal.map(|n| n / p.length))
 }

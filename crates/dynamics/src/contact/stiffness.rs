@@ -249,7 +249,7 @@ fn changes_of_discrete_gradients(
     normal * pn + tangential * pt
 }
 
-/// H1, H2 and H3 of the products pi1 = r.e, pi2 = r x e and pi3 = e.e.
+/// Matrices H1, H2 and H3 of the products pi1 = r.e, pi2 = r x e and pi3 = e.e.
 fn products() -> [Matrix4<f64>; 3] {
     #[rustfmt::skip]
     let h1 = Matrix4::new(

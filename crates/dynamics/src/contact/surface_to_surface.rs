@@ -566,7 +566,7 @@ impl SurfacePoint {
         [self.bulge.below(p).raised(-self.rise).gap, p.gap]
     }
 
-    /// (e_n.d_e)/l: the rotation of the segment in the increment.
+    /// Rotation (e_n.d_e)/l of the segment in the increment.
     fn turn(&self, p: &Projection, at: &Configurations) -> f64 {
         let [start, end] = self.configurations(at).map(|[_, a, b]| difference(a, b));
         dot(p.normal, difference(start, end)) / p.length

@@ -173,8 +173,8 @@ impl<'m> Subincrements<'_, 'm> {
     /// g(tau) = 0    eq. (6.4)
     /// ```
     ///
-    /// g is the gap at the end of a subincrement of length tau. If the whole rest does not converge, the second-order
-    /// motion of the start (paper eq. 50) predicts tau.
+    /// Here g is the gap at the end of a subincrement of length tau. If the whole rest does not converge, the
+    /// second-order motion of the start (paper eq. 50) predicts tau.
     pub fn next(&mut self) -> Result<Subincrement, FailedSubincrement> {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let search = &mut self.workspace.search;

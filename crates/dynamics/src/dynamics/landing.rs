@@ -92,8 +92,8 @@ impl LandedPair {
 
 /// A pair that lands, with its load; `None` for a pair that was closed at the start.
 ///
-/// D = -Pn (Bn d), eq. (6.5), is the energy that the force of the pair has removed. The load is Gn^T at the end, whose
-/// moments about the end positions cancel, and (Pt/Pn) Gt^T for friction.
+/// The value D = -Pn (Bn d), eq. (6.5), is the energy that the force of the pair has removed. The load is Gn^T at the
+/// end, whose moments about the end positions cancel, and (Pt/Pn) Gt^T for friction.
 fn landing(
     problem: &StepProblem,
     solved: &Solved,

@@ -638,8 +638,8 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
         states.positive
     }
 
-    /// sum v (F S grad h_a - (grad h . S grad h) gamma_a q): the strain of eq. (2.27) does not
-    /// contain |q|^2.
+    /// Force sum v (F S grad h_a - (grad h.S grad h) gamma_a q) at node a: the strain of eq. (2.27) does not contain
+    /// |q|^2.
     #[inline(always)]
     fn force<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,

@@ -1,5 +1,5 @@
-//! Hencky's material: Kirchhoff stress linear in the logarithmic strain (Hencky, Z. techn. Phys. 9, 1928; Anand, J. Appl. Mech.
-//! 46, 1979). See docs/theory/materials.md.
+//! Hencky's material: Kirchhoff stress linear in the logarithmic strain (Hencky 1928; Anand 1979). See
+//! docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
 use super::spectrum::{Spectrum, log_change};

@@ -1,6 +1,5 @@
 //! Elastic materials, whose stress is the derivative of a stored energy. The energy-momentum stress is the discrete
-//! gradient of Gonzalez (Comput. Methods Appl. Mech. Engrg. 190, 2000) in the Green-Lagrange strain. See
-//! docs/theory/materials.md and docs/theory/time.md.
+//! gradient of Gonzalez (2000) in the Green-Lagrange strain. See docs/theory/materials.md and docs/theory/time.md.
 //!
 //! # Derivation
 //!

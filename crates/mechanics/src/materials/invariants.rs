@@ -107,7 +107,7 @@ pub trait InvariantEnergy {
 
 /// Measures of the change of volume and shape at a strain.
 struct Invariants<T> {
-    /// G = 2 E.
+    /// Tensor G = 2 E.
     g: Symmetric<T>,
     /// Invariants i, m and n of G: its trace, the sum of its principal minors, and its determinant.
     i: T,
@@ -118,7 +118,7 @@ struct Invariants<T> {
     j: T,
     /// Change of volume J - 1 = s/(J + 1).
     grown: T,
-    /// a = J^(2/3).
+    /// Factor a = J^(2/3).
     a: T,
     /// Difference b = a - 1 = s/(a² + a + 1).
     b: T,

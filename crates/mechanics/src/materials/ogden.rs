@@ -1,6 +1,5 @@
 //! Compressible hyperelastic material of Ogden: powers of the principal stretches of the distortion, and the volume
-//! (Ogden, Proc. R. Soc. Lond. A 326, 1972; Holzapfel, Nonlinear Solid Mechanics, section 6.5). See
-//! docs/theory/materials.md.
+//! (Ogden 1972; Holzapfel, Nonlinear Solid Mechanics, section 6.5). See docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
 use super::invariants::VolumeEnergy;

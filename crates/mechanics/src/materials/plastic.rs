@@ -1,7 +1,6 @@
 //! J2 plasticity at finite strain: multiplicative, with Hencky's elasticity, isotropic hardening from a table and
 //! linear kinematic hardening. The flow of an increment is computed within a potential of the strain, whose discrete
-//! gradient is the stress (Simo, Comput. Methods Appl. Mech. Engrg. 99, 1992; Ortiz & Stainier, ibid. 171, 1999). See
-//! docs/theory/materials.md, Plasticity.
+//! gradient is the stress (Simo 1992; Ortiz & Stainier 1999). See docs/theory/materials.md, Plasticity.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -374,7 +373,7 @@ impl Plastic {
 /// The internal variables of a point.
 #[derive(Debug, Clone, Copy, Default)]
 struct PlasticState {
-    /// G - I.
+    /// Tensor G - I.
     g: Symmetric,
     /// Back strain A.
     back: Symmetric,

@@ -1,6 +1,5 @@
 //! Compressible hyperelastic materials of Mooney-Rivlin and Yeoh: polynomials of the invariants of the distortion, and
-//! of the volume (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6; Yeoh, Rubber Chem. Technol. 63, 1990). See
-//! docs/theory/materials.md.
+//! of the volume (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6; Yeoh 1990). See docs/theory/materials.md.
 
 use super::invariants::{InvariantEnergy, VolumeEnergy};
 use super::number::Number;

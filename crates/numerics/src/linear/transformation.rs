@@ -30,14 +30,14 @@ pub struct Transformation {
 }
 
 impl Transformation {
-    /// T q with the coefficients of the derivatives: a motion of all dofs.
+    /// Motion T q of all dofs, with the coefficients of the derivatives.
     pub fn motion(&self, q: &[f64]) -> Vec<f64> {
         let mut motion = vec![0.0; self.starts.len() - 1];
         self.add(q, &mut motion);
         motion
     }
 
-    /// T q with the coefficients by which forces act: the motion with which forces at all dofs do work.
+    /// Motion T q on which forces at all dofs do work, with the coefficients by which forces act.
     pub fn work(&self, q: &[f64]) -> Vec<f64> {
         let of_row = |row: &[(usize, f64)]| row.iter().map(|&(at, c)| c * q[at]).sum();
         self.rows().map(of_row).collect()

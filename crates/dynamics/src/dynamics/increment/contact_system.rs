@@ -70,9 +70,9 @@ impl System<'_> {
     /// constraints are solved by blocks where that is faster.
     ///
     /// If the problem with derivative rows has no solution, the problem with force rows in place of the derivative rows
-    /// is solved. Q is then symmetric and the theorem of docs/theory/complementarity.md holds, so a ray means that
-    /// pairs contradict each other. If pairs are so nearly the same that round-off spoils both problems, the answer
-    /// near the last forces is used.
+    /// is solved. With force rows Q is symmetric and the theorem of docs/theory/complementarity.md holds, so a ray
+    /// means that pairs contradict each other. If pairs are so nearly the same that round-off spoils both problems, the
+    /// answer near the last forces is used.
     pub(super) fn solve_contact(
         &mut self,
         constraints: &[&Constraint],
@@ -207,14 +207,14 @@ const COUPLING: f64 = 0.1;
 struct GapsAndSlips<'r, 'a> {
     response: &'r mut Response<'a>,
     constraints: &'r [&'r Constraint],
-    /// eps Q_kk of eq. (5.3), zero without a weight.
+    /// Terms eps Q_kk of the equal-force rule, eq. (5.3), zero without a weight.
     proximal: Vec<[f64; 2]>,
-    /// P^0 of eq. (5.3): the forces of the last pass.
+    /// Forces P^0 of the last pass, for eq. (5.3).
     near: Vec<[f64; 2]>,
 }
 
 impl GapsAndSlips<'_, '_> {
-    /// g + G W B^T P + eps diag(Q) (P - P^0), where g are gaps and slips without contact forces.
+    /// Gaps and slips g + G W B^T P + eps diag(Q) (P - P^0), where g are the gaps and slips without contact forces.
     fn under(&mut self, system: &mut System, forces: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let constraints = self.constraints.iter().copied();
         let acting = constraints.clone().zip(forces.iter().copied());
@@ -375,8 +375,8 @@ fn is_coupled(part: &FrictionalLcp) -> bool {
     (1..part.len()).map(coupling).fold(1.0, f64::min) > COUPLING
 }
 
-/// u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. This response is available at
-/// the nodes of the constraints at any time, and everywhere at the end.
+/// The response u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. This response is
+/// available at the nodes of the constraints at any time, and everywhere at the end.
 pub(super) struct Response<'a> {
     /// Displacements u, over all dofs.
     start: &'a [f64],

@@ -40,7 +40,7 @@ pub(crate) struct Impulses {
     /// The velocity that impulses start from in place of V0, eq. (11.5) and eq. (11.11); `None` if impulses start from
     /// V0.
     seen: Option<Vec<f64>>,
-    /// J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty without impulses.
+    /// Impulses J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty without impulses.
     resultant: Vec<f64>,
     /// Keys and normal forces of the pairs that did not slip in the last pass, increasing.
     sticking: Vec<(ConstraintKey, f64)>,
@@ -74,7 +74,7 @@ impl Impulses {
         self.forces.acting()
     }
 
-    /// J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty without impulses.
+    /// Impulses J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty without impulses.
     pub fn resultant(&self) -> &[f64] {
         &self.resultant
     }
@@ -374,8 +374,8 @@ fn impulses(
 }
 
 /// Impulses of constraints of which some have a standing impulse P0, with Phi + P0 >= 0 in place of Phi >= 0, eq.
-/// (11.7). V0 - M^-1 Bn^T P0 is the velocity without the standing impulses. If an impulse would cancel all of a
-/// standing impulse P0, this P0 is set to zero and the impulses are computed anew.
+/// (11.7). The vector V0 - M^-1 Bn^T P0 is the velocity without the standing impulses. If an impulse would cancel all
+/// of a standing impulse P0, this P0 is set to zero and the impulses are computed anew.
 fn standing_impulses(
     constraints: &[Constraint],
     mut standing: Vec<f64>,

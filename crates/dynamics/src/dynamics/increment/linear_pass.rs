@@ -29,7 +29,7 @@ pub(super) struct Vectors {
     pub support_force: Vec<f64>,
     /// Load r - theta2 K d_p.
     pub load: Vec<f64>,
-    /// d_p plus the motion that closes the gaps of the hinges.
+    /// Prescribed motion d_p plus the motion that closes the gaps of the hinges.
     pub closing: Vec<f64>,
     /// Correction dU.
     pub du: Vec<f64>,
@@ -45,7 +45,7 @@ pub(super) struct Vectors {
 pub(super) struct SkewPart {
     /// Dofs of each skew part, and N over these dofs.
     parts: Vec<(Vec<usize>, DMatrix<f64>)>,
-    /// N dU over all dofs (force).
+    /// Part N dU of the change of the forces, over all dofs (force).
     force: Vec<f64>,
     /// Part of the first change of N dU that is left to the next pass.
     left: f64,
@@ -70,7 +70,7 @@ impl SkewPart {
         load.iter_mut().zip(&self.force).for_each(|(r, f)| *r += f);
     }
 
-    /// N x for a motion x of all dofs.
+    /// The product N x for a motion x of all dofs.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
         let mut force = vec![0.0; x.len()];
         for (dofs, skew) in &self.parts {

@@ -41,7 +41,7 @@ pub(crate) struct Ledger {
     pub works: Vec<PairWork>,
     /// Forces at the end of the last increment, in a static or quasi-static step.
     pub end: Option<EndForces>,
-    /// T + W at the start of the analysis.
+    /// Kinetic plus strain energy, T + W, at the start of the analysis.
     start: f64,
     /// Work of the loads and work of the supports in static steps.
     sources: [f64; 2],

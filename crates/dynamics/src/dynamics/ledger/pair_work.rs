@@ -128,7 +128,7 @@ impl EndForces {
         })
     }
 
-    /// F - R - B^T P over all dofs: the force of supports and equations (force).
+    /// Force F - R - B^T P of supports and equations, over all dofs (force).
     pub fn missing(&self, dofs: usize) -> Vec<f64> {
         let mut missing = difference(&self.internal, &self.load);
         let contact = self.contact(dofs);

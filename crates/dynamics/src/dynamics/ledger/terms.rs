@@ -21,7 +21,7 @@ pub(super) struct Kinematics<'m> {
 }
 
 impl Kinematics<'_> {
-    /// V_mid = (V0+ + V1)/2 of a dof.
+    /// Mean velocity V_mid = (V0+ + V1)/2 of a dof.
     fn v_mid(&self, dof: usize) -> f64 {
         (self.v0p[dof] + self.v1[dof]) / 2.0
     }

@@ -109,7 +109,7 @@ impl Integration {
         }
     }
 
-    /// U_theta = U0 + theta2 d + (theta1 - theta2) dt V0+, d = U - U0, eq. (4.3).
+    /// Displacements U_theta = U0 + theta2 d + (theta1 - theta2) dt V0+ with d = U - U0, eq. (4.3).
     pub fn write_displacement(&self, [u0, d, v0p]: [&[f64]; 3], dt: f64, u_theta: &mut [f64]) {
         let lag = (self.theta1 - self.theta2) * dt;
         for (u_theta, ((u0, d), v0p)) in u_theta.iter_mut().zip(u0.iter().zip(d).zip(v0p)) {

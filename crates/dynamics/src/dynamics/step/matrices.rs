@@ -461,7 +461,7 @@ impl EffectiveStiffness {
     }
 }
 
-/// K* or M of a step, with the meter of its work.
+/// The matrix K* or M of a step, with the meter that measures its work.
 pub(crate) struct System<'a> {
     matrix: &'a mut FactoredMatrix,
     meter: &'a mut Meter,
