@@ -236,8 +236,8 @@ class Building(ABC):
     def pre_tension(self, surface: str, node: str, normal: tuple[float, float] | None = None) -> Self:
         """Cuts a body, such as a bolt, along faces between its elements, for its preload.
 
-        In steps, direction 1 of the node (see `node`) is the overlap of the two sides of the cut: `load` gives the
-        force of the bolt (tension is positive), and `support` prescribes the overlap. `normal` is the normal of the
+        In steps, direction 1 of the node (see `node`) is the overlap of the two sides of the cut. There `load` gives
+        the force of the bolt (tension is positive), and `support` prescribes the overlap. `normal` is the normal of the
         section; the default is the mean normal of the faces.
         """
         if normal == (0.0, 0.0):

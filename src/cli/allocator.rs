@@ -1,5 +1,5 @@
 //! The allocator of the program: if the system refuses memory, the program ends with exit code 4 and a line that states
-//! the memory that was requested; it does not abort.
+//! the memory that was requested.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io;

@@ -85,8 +85,9 @@ impl Python {
     }
 }
 
-/// Interpreters that may have the package: only the interpreter named by STICKSLIP_PYTHON if this variable is set; else
-/// the interpreters of the checkout in which the program was built, next to the program, and on the search path.
+/// Interpreters that may have the package: only the interpreter named by STICKSLIP_PYTHON, if this variable is set.
+/// Otherwise the interpreters of the checkout in which the program was built, next to the program, and on the search
+/// path.
 fn pythons(program: Option<&Path>) -> Vec<Python> {
     if let Some(named) = env::var_os(PYTHON).filter(|name| !name.is_empty()) {
         return vec![Python::new(named)];

@@ -267,9 +267,9 @@ class Touch:
 def touching(
     x: Array, way: Array, found: list[Contact], nodes: Integers, limit: float
 ) -> tuple[list[Touch], Array, Array, set[int]]:
-    """Returns the slave nodes among `nodes` that are on segments; the smallest distance of each node from a line, and
-    of each slave node from a segment less the way of the increment [N]; and the nodes of corners that other slave nodes
-    meet."""
+    """Returns four results: the slave nodes among `nodes` that are on segments; the smallest distance of each node from
+    a line [N]; the smallest distance of each slave node from a segment, less its way in the increment [N]; and the
+    nodes of corners that other slave nodes meet."""
     nearest = np.full(len(x), np.inf)
     reached = np.full(len(x), np.inf)
     touches = []

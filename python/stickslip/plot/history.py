@@ -1,7 +1,7 @@
 """Draws the histories of results.
 
 Without names the command draws the energy accounts, the energy balance, momentum and contact forces, and force against
-displacement if a force moves something; results stand side by side or, with --overlay, on top of each other. With --y
+displacement if a force moves something. Results stand side by side or, with --overlay, on top of each other. With --y
 the command draws any histories, against the time or against the history of --x. With --y all results are drawn in the
 same axes, and every --y has axes of its own:
 
@@ -74,12 +74,12 @@ def energy(axes: Axes, results: Result) -> None:
 
 
 def relative_balance(results: Result) -> Array:
-    """Draws the energy balance, relative to the largest energy."""
+    """The energy balance, relative to the largest energy."""
     return np.abs(results.history.energy["balance"]) / (results.history.energy.largest or 1.0)
 
 
 def balance(axes: Axes, results: Result) -> None:
-    """The relative energy balance."""
+    """Draws the relative energy balance."""
     axes.semilogy(
         results.history.time, np.maximum(relative_balance(results), LEAST), color="k", lw=0.7
     )

@@ -236,8 +236,8 @@ PANELS = 6
 def chosen_times(results: Result, times: list[float] | None, interval: float | None, field: Field | None = None) -> Array:
     """The given times, or multiples of an interval, or times that represent the whole run.
 
-    The representative times are the start, the ends of the steps and the time of the largest value of the field;
-    further times between these are added, up to six times.
+    The representative times are the start, the ends of the steps and the time of the largest value of the field.
+    Further times between these are added, up to six times in all.
     """
     if times:
         return np.array(times)

@@ -141,8 +141,8 @@ impl<'a> Line<'a> {
             .collect()
     }
 
-    /// The label (an integer without sign) and the coordinates of a line, with 0 for missing coordinates; `None` if the
-    /// line has anything else, or numbers that other codes read differently.
+    /// The label (an integer without sign) and the coordinates of a line, with 0 for missing coordinates. `None` if the
+    /// line has other fields, or numbers that other codes read differently.
     pub fn plain_point(self) -> Option<(u64, [f64; 3])> {
         let mut fields = self.plain_fields();
         let label = fields.next()?.parse().ok()?;

@@ -97,7 +97,7 @@ fn exponent(text: &str, at: usize) -> Option<(&str, bool, usize)> {
     is_exponent.then_some((text.get(sign..end)?, !has_letter, end))
 }
 
-/// The first character from a byte on that cannot belong to a number.
+/// The first character, at a byte or behind it, that cannot belong to a number.
 fn unexpected(text: &str, at: usize) -> NotANumber {
     let rest = text.get(at..).unwrap_or("");
     let after = rest.trim_start_matches(|c| "+-.eEdD".contains(c));

@@ -2,9 +2,8 @@
 //! setting in full, numbers in the shortest form that reads as the same number.
 //!
 //! The flat deck reads as the same model except in three points: contacts stand at other places of the text, each pair
-//! states whether it is surface to surface, and the flat deck has no instances: nodes and elements have the numbers of
-//! the mesh. Names of interactions and of time points are made up, because the model does not keep the names of the
-//! deck.
+//! states its formulation, and nodes and elements have the numbers of the mesh, without instances. Names of
+//! interactions and of time points are made up, because the model does not keep the names of the deck.
 
 mod lines;
 mod model;

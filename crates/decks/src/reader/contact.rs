@@ -1,5 +1,5 @@
-//! `*CONTACT PAIR` and `*CONTACT`, which is general contact of every exterior face with every other and with the rigid
-//! surfaces; also interactions of contacts, and the nodes that general contact moves before the start.
+//! `*CONTACT PAIR` and `*CONTACT`: contact pairs, and general contact of every exterior face with every other and with
+//! the rigid surfaces. Also interactions of contacts, and the nodes that general contact moves before the start.
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;

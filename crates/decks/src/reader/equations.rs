@@ -224,8 +224,8 @@ fn solved_for((dof, first): (usize, f64), mut others: Vec<(usize, f64)>) -> Solu
 }
 
 /// Solves an equation for one of the two displacements of a node. Earlier equations are substituted into the equation,
-/// and the displacement with the larger coefficient is eliminated; if the other displacement depends on this one, the
-/// result is also substituted in the equation of the other.
+/// and the displacement with the larger coefficient is eliminated. If the other displacement depends on the eliminated
+/// one, the result is also substituted in its equation.
 fn solved_at_node(
     own: &[(usize, f64)],
     others: impl Iterator<Item = (usize, f64)>,

@@ -1,7 +1,7 @@
 //! `*NODE` and `*ELEMENT`.
 //!
 //! A line element, such as mesh generators write for boundary curves, names the side of a plane element with the same
-//! nodes; such an element has no stiffness and no section.
+//! nodes. A line element has no stiffness and no section.
 
 use super::collapsed::Collapsed;
 use super::context::Context;

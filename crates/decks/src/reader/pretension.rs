@@ -1,5 +1,5 @@
 //! `*PRE-TENSION SECTION`: a body is cut along a surface, and equations let the two sides of the cut overlap by one
-//! additional displacement; a force tightens this overlap, and a support locks the overlap. See docs/theory/contact.md,
+//! additional displacement. A force tightens the overlap, and a support locks it. See docs/theory/contact.md,
 //! Pre-tension.
 
 use super::context::Context;

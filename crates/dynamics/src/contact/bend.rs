@@ -13,7 +13,7 @@ pub(super) struct OfChord {
     pub xi: [f64; 6],
     /// Derivative of the length l of the chord.
     pub length: [f64; 6],
-    /// Derivative of Bn d, the motion along the normal.
+    /// Derivative of the normal motion Bn d.
     pub normal_motion: [f64; 6],
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Bend {
     pub chord: [RowPair<6>; 2],
     /// Derivative of the slope beta (1/length).
     of_slope: [f64; 6],
-    /// Derivative of Bn d of the chord.
+    /// Derivative of the normal motion Bn d of the chord.
     of_normal_motion: [f64; 6],
     /// Derivative of the height b(xi) (dimensionless).
     pub of_height: [f64; 6],

@@ -17,8 +17,8 @@ pub struct Bulge {
     coefficients: [f64; 4],
     /// Whether the face goes on as a straight line beyond the ends of the segment. For nodes the face goes straight on
     /// beyond the ends of the segment: a node comes over an end before it changes its segment. For points of faces the
-    /// cubic goes on beyond the ends of the segment: a point changes its segment at the bisector, and a quantity that
-    /// is integrated over points must be one cubic.
+    /// cubic goes on beyond the ends of the segment: a point changes its segment at the bisector, and integration over
+    /// points needs one cubic.
     goes_straight_on: bool,
 }
 

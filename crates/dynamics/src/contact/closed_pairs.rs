@@ -164,7 +164,7 @@ impl ClosedPairs {
     }
 
     /// States from which the complementarity problem of constraints with the given, increasing keys starts. A
-    /// constraint starts as open if it was open and its slave node still has a closed pair among `keys`; only a node
+    /// constraint starts as open if it was open and its slave node still has a closed pair among `keys`. Only a node
     /// that has come to another segment hands its state on.
     pub fn states_among(&self, keys: &[ConstraintKey]) -> impl Iterator<Item = ContactState> {
         let is_left = |pair: &ClosedPair| keys.binary_search(&pair.key).is_err();

@@ -8,7 +8,7 @@ use crate::vectors::angle;
 ///
 /// `normals` are the normals of the segments before and after a convex corner; `own` are the normals before and after
 /// the slave node on its own surface. A normal that separates slave node and corner lies in the normal cone between
-/// `normals` and in the cone between the opposites of `own`; the common normal is the middle of the intersection of
+/// `normals` and in the cone between the opposites of `own`. The common normal is the middle of the intersection of
 /// both cones. Flush blocks meet with the normal of their faces, two corners with the normal between their bisectors. A
 /// node in a concave corner has no common normal.
 pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> {

@@ -419,8 +419,8 @@ fn at_segment(places: &NodePositions, radius: f64, height: f64) -> DiscRows {
     }
 }
 
-/// Ingredients of the rows at an arc: r at start, middle and end, m = |r_m|, and the weights of the rotations of disc
-/// and arc.
+/// Values from which the rows of a disc at an arc are made: the vector r at start, middle and end, m = |r_m|, and the
+/// weights of the rotations of disc and arc.
 struct AtArc {
     r: [Vector2<f64>; 2],
     middle: Vector2<f64>,

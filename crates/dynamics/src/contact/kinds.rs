@@ -29,7 +29,7 @@ impl Constraint {
     }
 
     /// Derivative of the contact force with respect to the iterate, d(Bn^T Pn + Bt^T Pt)/dU at constant Pn and Pt, over
-    /// the dofs of the constraint (force/length); with friction the matrix is not symmetric.
+    /// the dofs of the constraint (force/length). With friction the matrix is not symmetric.
     pub fn change(&self, force: [f64; 2], at: &Configurations) -> DMatrix<f64> {
         match &self.source.target {
             Target::Segment(segment) => segment.change(self, force, at),

@@ -45,13 +45,13 @@ impl SlaveChoice {
 /// Writes the pairs of the chosen slave nodes of all contacts, with increasing keys, between the displacements `u0` of
 /// the start and `u` of an iterate, which the search covers. `before` are the constraints of the last pass, also with
 /// increasing keys. `closed_at_start` are the pairs closed at the start. With `kept`, nodes keep targets up to this
-/// overrun beyond the ends (segment lengths), even if they are at other targets: so passes converge that go to and fro
-/// across a corner.
+/// overrun beyond the ends (segment lengths), even if they are at other targets, so that passes converge that go to and
+/// fro across a corner.
 ///
 /// Pairs of contact from surface to surface are points of slave faces, whose rows have the given form.
 ///
-/// A node that has just left its segment by a little and finds no other target keeps this segment: the end of the
-/// increment decides whether the node has slid off, not one of its passes.
+/// A node that has just left its segment by a little and finds no other target keeps this segment. The end of the
+/// increment decides whether the node has slid off, not one of the passes.
 pub fn find_targets(
     search: &Search,
     [u0, u]: [&[f64]; 2],
@@ -160,7 +160,8 @@ fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut Con
 
 /// The pair of a slave node and a target. With surface to surface a corner may keep its overlap at the start, as a mean
 /// gap may: a_j = max(-g_j0, 0), eq. (7.9). A corner that has slid on past a convex vertex lay behind the line of its
-/// new segment at the start; its allowed overlap is its overlap with the segment on which it was closed.
+/// new segment at the start. The allowed overlap of such a corner is its overlap with the segment on which it was
+/// closed.
 fn pair_target(
     listed: &ListedSlave,
     target: ContactTarget,

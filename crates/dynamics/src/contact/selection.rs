@@ -128,8 +128,8 @@ impl SlaveNode<'_> {
         }
     }
 
-    /// The faced segments, grouped into runs of neighbours with straight or convex corners between
-    /// them.
+    /// The segments that the node faces, grouped into runs of neighbours with straight or convex corners between
+    /// neighbours.
     fn runs(&self, faced: &[usize]) -> SmallVec<[Segments; 2]> {
         let is_faced = |i: &usize| faced.binary_search(i).is_ok();
         let next = |i: usize| {
@@ -267,7 +267,7 @@ impl SlaveNode<'_> {
     /// The neighbour of segment `i` round a convex corner near the node, if the surface of the node does not face
     /// segment `i`. Where a corner slides over a corner, only the face that the node's surface faces constrains the
     /// node; behind the other face lies the node's own body. At the start the node must have been over the face of the
-    /// neighbour, or near its end with half of one of the node's own faces over this face: the long line of a punch
+    /// neighbour, or near its end with half of one of the node's own faces over this face. So the long line of a punch
     /// does not stop a node beside the punch.
     fn adjacent_to_faced_away(&self, i: usize) -> Option<usize> {
         if self.is_opposite(i)? {

@@ -2,7 +2,7 @@
 //! points inside the slave faces. See docs/theory/geometry.md, From surface to surface.
 //!
 //! A point moves like a node: x_q = (1 - eta) x_1 + eta x_2 with constant eta is linear in the positions of the nodes,
-//! so it has the rows and the stiffness of a node on a segment.
+//! so the point has the rows and the stiffness of a node on a segment.
 
 use std::array::from_fn;
 
@@ -44,10 +44,10 @@ struct Mean {
 /// g_j = (1/c_j) sum_q w_q N_j(eta_q) g_q,   c_j = sum_q w_q N_j(eta_q)    eq. (3.18)
 /// ```
 ///
-/// A cell has two Gauss points where N_j g_q is quadratic, or cubic with the radius; w_q is then half the reference
-/// length of the cell, times the radius of the point in bodies of revolution. Cells end on the bisectors of the
-/// master's vertices in the iterate. With discrete gradients the cells also end on the bisectors at the start, since
-/// rows are exact differences between the two configurations.
+/// A cell has two Gauss points where N_j g_q is quadratic, or cubic with the radius. The weight w_q is then half the
+/// reference length of the cell, times the radius of the point in bodies of revolution. Cells end on the bisectors of
+/// the master's vertices in the iterate. With discrete gradients the cells also end on the bisectors at the start,
+/// since rows are exact differences between the two configurations.
 pub(super) fn find_points(
     territory: &Territory,
     positions: [Positions; 2],
@@ -589,8 +589,8 @@ impl SurfacePoint {
         (rows, tilt)
     }
 
-    /// Calls `take` for each node of the point with its place in `nodes`, the number (0, 1 or 2) of the vertex s, a or
-    /// b to which it belongs, and its part of this vertex.
+    /// Calls `take` for each node of the point, with the place of the node in `nodes`, the number (0, 1 or 2) of its
+    /// vertex s, a or b, and its part of this vertex.
     #[inline]
     fn each_share(&self, nodes: &[usize], mut take: impl FnMut(usize, usize, f64)) {
         let own = [(0, 1.0 - self.eta), (0, self.eta), (1, 1.0), (2, 1.0)];

@@ -33,7 +33,7 @@ pub(crate) const INSIDE_ROUND_OFF: f64 = 1e-9;
 /// whose line leaves the body is nearer to the far side.
 pub(crate) const NEARER_HALF: f64 = 2.0;
 /// Entry of Bn over the unknowns below which equations keep a node on its segment, so the entry is round-off of weights
-/// and directions; the largest entry is of the order of 1.
+/// and directions. The largest entry of Bn is of the order of 1.
 pub(crate) const TIED_ROW: f64 = 1e-9;
 /// Part of its reference length below which a segment has collapsed to a point and has no normal.
 pub(crate) const COLLAPSED_LENGTH: f64 = 1e-9;
@@ -92,7 +92,7 @@ pub(crate) const SLID: f64 = 1e-7;
 /// Distance along the faces from a convex corner, within which a node meets the corner itself.
 pub(crate) const CORNER_TIP: f64 = 1e-5;
 /// Overrun beyond the ends of a segment up to which a node keeps the segment, if the node has left it within an
-/// increment and found no other segment; the end of the increment decides whether the node has slid off.
+/// increment and found no other segment. The end of the increment decides whether the node has slid off.
 pub(crate) const KEPT_BEYOND_ENDS: f64 = 0.1;
 /// Overrun up to which a node keeps its segment once the passes have settled, even if another segment would constrain
 /// it. While passes go to and fro between two targets, `KEPT_BEYOND_ENDS` applies.
@@ -144,7 +144,7 @@ pub(crate) const SEGMENT_END: f64 = 1e-6;
 /// With the depth 1e-5, walls of bricks need up to a third more passes.
 pub(crate) const CORNER_DEPTH: f64 = 3e-5;
 /// Depth of a corner on its straight path in an increment that does not count as penetration, in the unit of
-/// `CORNER_DEPTH`: a corner that slides over a segment whose face turns reaches it.
+/// `CORNER_DEPTH`. A corner that slides over a segment whose face turns reaches this depth.
 pub(crate) const CORNER_PATH_DEPTH: f64 = 0.05;
 /// Cosine of 20 degrees: a convex vertex that turns by more meets the other surface as a corner.
 pub(crate) const VERTEX_COSINE: f64 = 0.94;

@@ -149,8 +149,8 @@ impl NodePath<'_> {
         None
     }
 
-    /// The nearest segment at the end, if the node is behind it without a force although it was
-    /// outside at the start: such a node has come round a corner that has turned concave.
+    /// The nearest segment at the end, if the node is behind it without a force although it was outside at the start.
+    /// Such a node has come round a corner that has turned concave.
     fn ends_inside(&self, segments: impl Iterator<Item = usize> + Clone) -> Option<usize> {
         let is_own = |i: &usize| self.contact.is_end(self.slave, *i);
         let others = segments.filter(|i| !is_own(i));

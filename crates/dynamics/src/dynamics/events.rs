@@ -82,9 +82,9 @@ impl FreeMotion<'_> {
         u0.iter().zip(&travel).map(|(u, d)| u + d).collect()
     }
 
-    /// Whether node and segment move far enough relative to each other to meet. A node that meets a segment at xi was
-    /// no farther away from there than (1 - xi) times its path relative to the end a plus xi times its path relative to
-    /// b.
+    /// Whether node and segment move far enough relative to each other to meet. The distance of a node from the place
+    /// xi where it will meet a segment is at most (1 - xi) times its path relative to the end a, plus xi times its path
+    /// relative to the end b.
     fn may_meet(&self, start: &Projection, [s, a, b]: [usize; 3]) -> bool {
         let Path {
             v, a: acceleration, ..

@@ -74,7 +74,7 @@ pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adj
 }
 
 /// Chooses the nodes that move in a sweep: of a node and the segment that it faces, either the node or the segment
-/// moves. The deepest nodes come first; of nodes with the same depth (up to round-off), the nodes that face the longest
+/// moves. The deepest nodes come first. Of nodes with the same depth (up to round-off), the nodes that face the longest
 /// segments come first, since nodes of a fine mesh follow the shape of a coarse mesh. Nodes of equal depth that face
 /// equally long segments come in the order of the model.
 fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {

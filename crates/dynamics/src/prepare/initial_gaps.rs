@@ -177,7 +177,7 @@ impl<'m> Start<'m> {
     }
 
     /// Projection of a node on a segment that the node may face. The segment must not contain the node, and must be
-    /// penetrated by less than its length; if node and segment belong to the same body, the node must be in front.
+    /// penetrated by less than its length. If node and segment belong to the same body, the node must be in front.
     fn faced(&self, slave: usize, i: usize) -> Option<Projection> {
         let [a, b] = self.contact.segments[i];
         let p = self.project(slave, i);

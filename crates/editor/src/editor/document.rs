@@ -1,5 +1,5 @@
 //! The text of a file that is being edited. The time of a change depends only on the number of lines that the change
-//! touches: pieces of the text remember which of their lines are keyword lines or hold words, and only changed pieces
+//! touches. Pieces of the text remember which of their lines are keyword lines or hold words, and only changed pieces
 //! are examined again.
 
 use crate::deck::{Line, LineKind};

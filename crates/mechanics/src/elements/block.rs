@@ -433,8 +433,8 @@ pub fn times_transposed(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
 pub type MatrixLanes<const N: usize> = [[TensorLanes; N]; N];
 
 /// Adds the part of the strain around the axis to the tangent of a point, for a <= b. The row of B_L for the strain
-/// around the axis is b_a = (1 + h) h_a/R, which acts on displacements along the radius; `c` holds the moduli between
-/// component 33 and each component of the strain,
+/// around the axis is b_a = (1 + h) h_a/R, which acts on displacements along the radius. The array `c` holds the moduli
+/// between component 33 and each component of the strain,
 ///
 /// ```text
 /// b_a C_33,. B_b + its transpose + b_a b_b C_3333 + S_33 h_a h_b/R²

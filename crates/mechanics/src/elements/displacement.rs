@@ -38,7 +38,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> Formulation<N, P, HOOP> f
         positive
     }
 
-    /// The tangent is K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6) (paper eq. 12); in a body of revolution B_L
+    /// The tangent is K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6) (paper eq. 12). In a body of revolution B_L
     /// has the row (1 + h) h_a/R, and S_33 h_a h_b/R² is added, eq. (2.34).
     ///
     /// In the energy-momentum form, B_L on both sides belongs to the mid configuration, S is the energy-momentum

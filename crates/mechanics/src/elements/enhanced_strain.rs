@@ -1,8 +1,8 @@
 //! Enhanced strains of the four-node quadrilateral (CPE4I, CPS4I; Simo & Rifai 1990) and of the ring with its section
 //! (CAX4I), which bend without locking. The element adds four own strains to the strains of the displacements, and in a
-//! ring a fifth around the axis; the own strains minimise the stored energy of the element. Own strains are not part of
-//! the state: Newton's method in the element, eq. (2.28), computes them from the displacements, starting with the own
-//! strains of the last increment. See docs/theory/elements.md.
+//! ring a fifth own strain around the axis. The own strains minimise the stored energy of the element. Own strains are
+//! not part of the state: Newton's method in the element, eq. (2.28), computes them from the displacements, starting
+//! with the own strains of the last increment. See docs/theory/elements.md.
 //!
 //! # Derivation
 //!
@@ -781,7 +781,7 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
 
     /// The element stores its own strains alpha at the end: with the new variables or, if these alpha are not found,
     /// with the old variables. If a point has flowed, the dissipated energy D is the change of Phi beyond the change of
-    /// the stored energy: the dissipation of the points alone would have an error of first order in alpha.
+    /// the stored energy. The dissipation of the points alone would have an error of first order in alpha.
     fn update<'z, S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
         law: &AnyLaw<HOOP>,

@@ -18,7 +18,8 @@ use super::{Across, Plane, SaintVenantKirchhoff, SmallStrainModuli, StressAtPoin
 ///
 /// The tensor D is the mean of the cofactors of C on the straight path from C0 to C1, so D is positive definite. Here
 /// mu and lambda are the moduli at small strains. With the part dJ/2 G (in the plane) of the first term, the stress
-/// splits into a stress of distortion and a stress of volume; each depends on only one of the two moduli.
+/// splits into a stress of distortion and a stress of volume. Each of these stresses depends on only one of the two
+/// moduli.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscosity {
     /// Viscosity of distortion, 2 beta mu (force time/length^2).

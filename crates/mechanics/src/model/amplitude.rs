@@ -77,8 +77,8 @@ impl Amplitude {
     }
 
     /// Derivative of the amplitude at `t`. Where the derivative jumps at a point of a table, the result is the
-    /// derivative in the interval before the jump; at the first point and at the start of a signal it is the derivative
-    /// after the jump.
+    /// derivative in the interval before the jump. At the first point and at the start of a signal the result is the
+    /// derivative after the jump.
     pub fn rate(&self, t: f64) -> f64 {
         self.value_and_rate(t)[1]
     }

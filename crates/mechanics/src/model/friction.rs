@@ -135,8 +135,8 @@ impl Friction {
     }
 
     /// Two coefficients of the law, equal if the coefficient is constant. The two coefficients are the coefficients at
-    /// rest and in fast slip; for a table, or with a limit of the shear stress, they are the largest and the smallest
-    /// coefficient.
+    /// rest and in fast slip. For a table, or with a limit of the shear stress, the two are the largest and the
+    /// smallest coefficient.
     pub fn range(&self) -> [f64; 2] {
         let [first, other] = match &self.law {
             FrictionLaw::Decay {

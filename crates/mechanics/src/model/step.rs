@@ -309,7 +309,7 @@ pub struct NodeTemperature {
     pub node: usize,
 }
 
-/// Overlap that a contact allows. The magnitude is a length, the same for all slave nodes; for a shrink fit the
+/// Overlap that a contact allows. The magnitude is a length, the same for all slave nodes. For a shrink fit the
 /// magnitude is a factor on the overlap of each node at the start of the analysis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interference {

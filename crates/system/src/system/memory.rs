@@ -13,9 +13,9 @@ pub fn peak_memory() -> Option<u64> {
     kilobytes(&read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
-/// Number of free bytes: the smallest of the numbers on the machine (with swap), in the control groups of this process
-/// that have a limit, and below the limits of the process itself (`ulimit -v`, `ulimit -d`). `None` if the system does
-/// not report the free memory.
+/// Number of free bytes: on the machine (with swap), in the control groups of this process with a limit, or below the
+/// limits of the process itself (`ulimit -v`, `ulimit -d`), whichever number is smallest. `None` if the system does not
+/// report the free memory.
 pub fn free_memory() -> Option<u64> {
     let machine = read_to_string("/proc/meminfo").ok()?;
     let swap = kilobytes(&machine, "SwapFree:").unwrap_or(0);

@@ -67,7 +67,7 @@ pub fn is_at(file: &File, path: &Path) -> bool {
 /// Reserves disk space for `length` bytes of a file behind its first `from` bytes; the size of the file stays the same.
 ///
 /// # Errors
-/// `StorageFull`, `QuotaExceeded` or `FileTooLarge` means that the disk has no such space; any other error means that
+/// `StorageFull`, `QuotaExceeded` or `FileTooLarge` means that the disk lacks this space; any other error means that
 /// the system or the file system cannot reserve space.
 pub fn reserve(file: &File, from: u64, length: u64) -> io::Result<()> {
     here::reserve(file, from, length)

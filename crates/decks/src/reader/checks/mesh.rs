@@ -121,7 +121,7 @@ fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
     cx.error(Code::BadShape, span, fault).help(help);
 }
 
-/// Smallest distance of a node between two corners from either corner, relative to the length of the side: if the node
+/// Smallest distance of a node between two corners from either corner, relative to the length of the side. If the node
 /// lies at a quarter of a straight side, det(dX/dr) vanishes at the corner.
 const NEAR_CORNER: f64 = 0.25;
 

@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 const MOST_SIDES: f64 = 1e6;
 
 /// Warns about steps that end before a wave has crossed the shortest side of an element, and about increments in which
-/// a wave crosses more than a million sides; `guide` is the shortest time in which a wave crosses a side.
+/// a wave crosses more than a million sides. `guide` is the shortest time in which a wave crosses a side.
 pub(crate) fn proportion(
     steps: &[Step],
     cards: &[StepCards],

@@ -105,7 +105,7 @@ impl Acting {
 }
 
 /// Pairs of elements that lie over each other, with the smaller index first: all pairs at places where boundaries of
-/// bodies meet; without such places, one pair for a body inside another body.
+/// bodies meet or, without such places, one pair for a body inside another body.
 fn overlapping(mesh: &Mesh) -> Vec<[usize; 2]> {
     let at_nodes = ElementsAtNodes::new(mesh);
     let (exterior, mut pairs) = exterior(mesh, &at_nodes);

@@ -106,8 +106,8 @@ impl ContactForces {
         }
     }
 
-    /// Solves for the contact forces of a pass, which replace those of the last pass, and writes the correction dU =
-    /// d_p + W (r + Bn^T Pn + Bt^T Pt). Here d_p is the motion of the supports, and r is the sum of all forces except
+    /// Solves for the contact forces of a pass, which replace the forces of the last pass, and writes the correction dU
+    /// = d_p + W (r + Bn^T Pn + Bt^T Pt). Here d_p is the motion of the supports, and r is the sum of all forces except
     /// contact forces (all dofs).
     ///
     /// Constraints that the last pass left open stay out of the problem at first; in a first pass, constraints that y =
@@ -198,7 +198,7 @@ impl ContactForces {
         });
     }
 
-    /// Doubles the number of constraints in the problem, by the constraints with the smallest gaps of the iterate: a
+    /// Doubles the number of constraints in the problem, by the constraints with the smallest gaps of the iterate. A
     /// body that the present constraints leave free moves on to the next constraints. Returns whether there were any
     /// constraints outside the problem.
     fn enter_nearest(&self, inside: &mut [bool]) -> bool {

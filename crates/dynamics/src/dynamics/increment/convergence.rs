@@ -14,12 +14,13 @@ use crate::linear::larger;
 /// down to round-off. A pass whose residual and correction are below the tolerance ends with an iterate that is better
 /// by the rate of the passes.
 const BALANCED: f64 = 0.1;
-/// Round-off of the residual once corrections hardly decrease, in units of eq. (4.10): in a row of K the other entries
+/// Round-off of the residual once corrections hardly decrease, in units of eq. (4.10). In a row of K the other entries
 /// together have about as much round-off as the diagonal entry.
 const STAGNANT_NOISE: f64 = 4.0;
 
 /// Scales of residual and correction of a pass. The scales are computed, so the answer does not depend on the system of
-/// units; every part and body has its own scales, so that a light body next to a heavy one is solved as accurately.
+/// units. Every part and body has its own scales, so that a light body next to a heavy body is solved as accurately as
+/// the heavy body.
 pub(crate) struct Scales<'a> {
     parts: &'a Parts,
     /// Largest force in equilibrium of every part.
@@ -63,9 +64,9 @@ pub(crate) struct Errors {
 
 impl<'a> Scales<'a> {
     /// Scales of a pass. `force` and `before` are the largest force in equilibrium of every part, in this pass and so
-    /// far; `stiffness` and `inertia` are the largest diagonal entries of theta2 K and (2/dt²) M of every part.
+    /// far. `stiffness` and `inertia` are the largest diagonal entries of theta2 K and (2/dt²) M of every part.
     ///
-    /// A force from displacements U has the round-off of K U; the inertia force has the round-off of (2/dt²) M d; a
+    /// A force from displacements U has the round-off of K U, and the inertia force has the round-off of (2/dt²) M d. A
     /// force that closes a gap between positions x has the round-off of K* x. A residual cannot be measured more finely
     /// than the round-off of the forces in it. Displacements that close a gap between positions x have the round-off of
     /// x.
@@ -171,7 +172,7 @@ impl<'a> Scales<'a> {
     }
 
     /// Whether gaps and slips of the constraints obey the contact law to the tolerance. Closed gaps are zero, and open
-    /// gaps are not negative; a pair that has not slipped in the last solution has no slip, and a pair that slips has
+    /// gaps are not negative. A pair that has not slipped in the last solution has no slip, and a pair that slips has
     /// no slip in the direction of its friction.
     pub fn obeys_contact_law(&self, contact: &ContactForces, settled: bool) -> bool {
         let overlap = if settled { SETTLED_OVERLAP } else { 0.0 };

@@ -5,7 +5,7 @@
 pub(super) const FIRST_WEIGHT: f64 = 1e-5;
 /// Factor on the weight from pass to pass.
 const DECREASE: f64 = 0.1;
-/// Least weight: with a smaller one, the round-off of the gaps moves the forces.
+/// Least weight: with a smaller weight, the round-off of the gaps moves the forces.
 const LEAST_WEIGHT: f64 = 1e-7;
 /// Ratio of successive corrections above which corrections crawl: a weight at its least value then falls further.
 const CRAWLING: f64 = 0.7;

@@ -226,7 +226,7 @@ impl Impulses {
 
     /// The velocity that the equilibrium of an iterate with the given constraints needs at the start. The velocity is
     /// V0+ if U_theta depends on V0+, or if the mass of bodies that turn acts by other arms in the iterate than at the
-    /// start; otherwise the velocity is V0 and the impulses enter separately, so nothing is solved with M.
+    /// start. Otherwise the velocity is V0, and the impulses enter separately without a solve with the mass matrix M.
     pub fn start_velocity<'a>(
         &'a mut self,
         problem: &StepProblem,

@@ -40,7 +40,7 @@ pub(super) struct StaticAttempt<'a, 'm> {
 impl<'m> StaticAttempt<'_, 'm> {
     /// Solves the increment, starting from the motion of the last increment, with factors that are kept as long as they
     /// pay, then with new factors in every pass. If both ways fail, the increment starts from rest, and then with K*
-    /// stiffened by closed pairs: K alone is soft in bending and leaves the contact forces of slender bodies few
+    /// stiffened by closed pairs. K alone is soft in bending and leaves the contact forces of slender bodies few
     /// digits.
     pub fn solve(mut self) -> Result<Solved, Failed> {
         let settings = &self.passes.problem.settings;

@@ -230,7 +230,7 @@ fn side_of_slave(model: &Model, bodies: &Bodies, constraint: &Constraint) -> f64
     }
 }
 
-/// Normal and tangential impulses of pairs in an increment, and the sum of the absolute normal impulses: if all of a
+/// Normal and tangential impulses of pairs in an increment, and the sum of the absolute normal impulses. If all of a
 /// force is taken back, the total normal impulse is only the round-off of its parts.
 type Totals<'s> = BTreeMap<ConstraintKey, (&'s Constraint, [f64; 3])>;
 

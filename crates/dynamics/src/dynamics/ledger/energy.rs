@@ -15,8 +15,8 @@ use crate::dynamics::step::{Equilibrium, ROUND_OFF, StepProblem, Workspace, diff
 use crate::elements::{ElementResult, TangentPart};
 use crate::linear::{larger, largest};
 
-/// Normal work of contact in an increment up to which this work is round-off, relative to the largest energy so far:
-/// forces and displacements are converged to 1e-11 (`TOLERANCE`), and the errors of pairs add up.
+/// Normal work of contact in an increment up to which this work is round-off, relative to the largest energy so far.
+/// Forces and displacements are converged to 1e-11 (`TOLERANCE`), and the errors of pairs add up.
 pub(super) const CONTACT_WORK_ROUND_OFF: f64 = 1e-10;
 
 /// Energy stored by elements, whose results are given, and by springs in a state (force length).

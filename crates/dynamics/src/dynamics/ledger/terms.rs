@@ -156,7 +156,7 @@ pub(super) fn enter_pair_works(energy: &mut Energy, works: &[PairWork]) {
 }
 
 /// Enters the returns and losses of landings and releases. The terms of landings are the energy D of eq. (6.5) with the
-/// work of the supports, eq. (6.10), and the friction taken back, eq. (6.13); the terms of releases are the loss R and
+/// work of the supports, eq. (6.10), and the friction taken back, eq. (6.13). The terms of releases are the loss R and
 /// the work of the loads while nodes come to rest, eq. (6.15).
 pub(super) fn enter_returned(energy: &mut Energy, returned: &Returned) {
     let Release {

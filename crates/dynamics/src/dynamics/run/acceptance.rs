@@ -12,7 +12,7 @@ use crate::dynamics::release_return::return_release;
 use crate::dynamics::results::{Cause, Failure, State};
 use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace};
 
-/// Largest number of halvings of an increment because contact adds energy.
+/// Largest number of times that an increment is halved because contact adds energy.
 const GAIN_HALVINGS: u32 = 5;
 
 /// Start of a subincrement: state and energies at the end of the last subincrement.

@@ -603,7 +603,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     /// Checks that a static increment does not lead to another equilibrium, that is, much farther than at the rate of
     /// the last increment, or (in the first increment) than by the tangent. An increment also passes the check if its
     /// displacement decreases with the length of the increment, or is below the resolution of the passes. Bodies that
-    /// only contact holds are not checked, since they may move freely until contact begins; if there are such bodies,
+    /// only contact holds are not checked, since they may move freely until contact begins. If there are such bodies,
     /// the other bodies may move as far as by the tangent.
     fn check_jump(
         &mut self,
@@ -733,7 +733,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Computes the velocity of supports and equations, and the acceleration, at the start of a dynamic step that does
-    /// not continue another dynamic step; at the start of a static step velocity and acceleration are zero.
+    /// not continue another dynamic step. At the start of a static step velocity and acceleration are zero.
     fn begin_motion(
         &mut self,
         problem: &StepProblem,

@@ -1,6 +1,6 @@
 //! Balance equation of an increment, by the procedure of its step. The balance has the weights and configurations of
 //! the scheme SS22 of Zienkiewicz, Wood & Hine (1984), of the energy-momentum form of Simo & Tarnow (1992), or of the
-//! backward Euler rule, and tells whether anything depends on rates. See docs/theory/time.md.
+//! backward Euler rule. The scheme also tells whether anything depends on rates. See docs/theory/time.md.
 
 use crate::contact::RowForm;
 use crate::dynamics::results::State;

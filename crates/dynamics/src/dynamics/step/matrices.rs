@@ -728,7 +728,8 @@ impl<'a> System<'a> {
         self.matrix.compliance.scope_of(constraint)
     }
 
-    /// The complementarity problem of constraints of a scope with the given gaps and slips without forces.
+    /// The complementarity problem of constraints whose compliance is computed together (a scope), with the given gaps
+    /// and slips without forces.
     pub fn frictional_lcp(
         &mut self,
         scope: &ConstraintGroup,

@@ -100,8 +100,8 @@ impl SlaveFaces {
     /// Here n, l and t are the outward normal, current length and thickness of a segment, and w is the node's part of
     /// the segment: 1/2, or on a side with a mid-side node 1/3 at a corner and 2/3 at the mid-side node. The area is
     /// defined so that the nodal forces of a uniform pressure give back this pressure. In a body of revolution the
-    /// thickness t is 2 pi r, evaluated at a third of the segment from the node, eq. (2.35); on a side with a mid-side
-    /// node the radius is that of the node itself.
+    /// thickness t is 2 pi r, evaluated at a third of the segment from the node, eq. (2.35). On a side with a mid-side
+    /// node the thickness is evaluated at the node itself.
     pub fn area(&self, node: usize, force: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
         let size = force[0].hypot(force[1]);
         // n l = (e_y, -e_x): on the right of the direction from a to b

@@ -446,8 +446,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Sets the accelerations of the nodes of driven bodies to (V1 - V0)/dt in an increment `d` from `u0`; `a` must
-    /// already hold the accelerations of the reference nodes and angles.
+    /// Sets the accelerations of the nodes of driven bodies to (V1 - V0)/dt in an increment `d` from `u0`. The list `a`
+    /// must already hold the accelerations of the reference nodes and angles.
     pub fn drive(&self, [u0, d]: [&[f64]; 2], v0: &[f64], dt: f64, a: &mut [f64]) {
         for body in self.driven() {
             let reference = 2 * body.reference;

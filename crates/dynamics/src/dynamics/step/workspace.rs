@@ -148,7 +148,7 @@ impl<'m> Workspace<'m> {
     }
 
     /// Checks that an equilibrium is stable. The check does nothing if the last factors belong to a state near the
-    /// equilibrium, were not stiffened by closed pairs, and the last complementarity problem with free pins was stable.
+    /// equilibrium without stiffening by closed pairs, and the last complementarity problem with free pins was stable.
     ///
     /// # Errors
     /// Returns an error if K* is not positive definite.
@@ -301,7 +301,7 @@ impl<'m> Workspace<'m> {
         Ok(())
     }
 
-    /// Acceleration at the start of a motion from M A = R + B^T P - F, with supports at rest; forces on nodes without
+    /// Acceleration at the start of a motion from M A = R + B^T P - F, with supports at rest. Forces on nodes without
     /// mass act on the nodes that carry their mass.
     pub fn start_acceleration(
         &mut self,
