@@ -16,7 +16,7 @@
 //!
 //! All layers except `output` and `cli` are in separate packages (`crates`), so that little has to be compiled again
 //! after a change of a file: `stickslip_system`, `stickslip_numerics`, `stickslip_mechanics`, `stickslip_decks`,
-//! `stickslip_editor` and `stickslip_dynamics`. This crate re-exports the modules of these packages under their names.
+//! `stickslip_editor` and `stickslip_dynamics`. This crate re-exports the modules of the packages under their names.
 //!
 //! # Equations
 //!

@@ -55,7 +55,7 @@ class Building(ABC):
 
     @abstractmethod
     def find(self, keyword: str) -> list[Card]:
-        """All cards with this keyword."""
+        """All cards with a given keyword."""
 
     # Meshes and sections.
 

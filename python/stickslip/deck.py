@@ -104,11 +104,11 @@ class Deck(Building, Shown):
         return {each["name"]: each["text"] for each in found if each}
 
     def find(self, keyword: str) -> list[Card]:
-        """All cards with this keyword."""
+        """All cards with a given keyword."""
         return [card for card in self.cards if card.keyword == fold(keyword)]
 
     def one(self, keyword: str) -> Card:
-        """The card with this keyword; the deck must have exactly one."""
+        """The card with a given keyword; the deck must have exactly one."""
         found = self.find(keyword)
         if len(found) != 1:
             raise ValueError(f"the deck has {len(found)} cards *{keyword}, not one")

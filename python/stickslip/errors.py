@@ -20,7 +20,7 @@ class Fault(Exception):
 
 
 class Missing(Fault, KeyError):
-    """A result has nothing with this name; the text lists the names that exist."""
+    """A result has no data with a given name; the text lists the names that exist."""
 
     __str__ = Exception.__str__
 

@@ -196,7 +196,7 @@ class Frames(Sequence[Frame]):
         return part(spelled, count, self.result.is_axisymmetric)
 
     def dataset(self, field: str) -> str:
-        """Path of the dataset that holds a field with exactly this name."""
+        """Path of the dataset that holds a field with exactly the given name."""
         return f"VTKHDF/{self.fields[field]}/{self.stored[field][0]}"
 
     def field(self, name: str) -> tuple[str, NDArray[Any]]:

@@ -86,7 +86,7 @@ class Mesh:
                 raise Fault(f"{what} have {kind} {worst}: there are 0 to {count[kind] - 1}")
 
     def faces(self, name: str) -> list[tuple[int, int]]:
-        """Element index and number of the side, from 1, for each side of the surface with this name."""
+        """Element index and number of the side, from 1, for each side of the surface with a given name."""
         if self._owner is None:
             self._owner = {}
             for index, element in enumerate(self.elements):

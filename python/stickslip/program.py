@@ -149,13 +149,13 @@ def run(
 ) -> Result:
     """Solves a deck, which is a file or a `Deck`, and returns its result.
 
-    The results go to the folder `output`. The results have the name of the file of the deck; for a `Deck` they have the
-    name `job`, and the deck is also written to this folder. Existing results are replaced, unless `overwrite` is False
-    or `resume` continues the run from its checkpoint. `options` are the options of `stickslip run`: frames, every,
-    solver, threads, checkpoint, extend and oldjob have a value; strict, lenient, verbose and resume are True. `words`
-    holds further options as they are typed on the command line. `parameters` gives values of parameters of the deck,
-    which replace the values of its `*PARAMETER` cards. `progress` is True to show the progress of the run (as a bar in
-    a notebook), or a function that is called with a `Progress` several times a second. A failed run raises
+    The results go to the folder `output`. The results have the name of the file of the deck; for a `Deck` the results
+    have the name `job`, and the deck is also written to this folder. Existing results are replaced, unless `overwrite`
+    is False or `resume` continues the run from its checkpoint. `options` are the options of `stickslip run`: frames,
+    every, solver, threads, checkpoint, extend and oldjob have a value; strict, lenient, verbose and resume are True.
+    `words` holds further options as they are typed on the command line. `parameters` gives values of parameters of the
+    deck, which replace the values of its `*PARAMETER` cards. `progress` is True to show the progress of the run (as a
+    bar in a notebook), or a function that is called with a `Progress` several times a second. A failed run raises
     DeckRejected, RunStopped or RunFailed.
     """
     folder = Path(output)

@@ -61,7 +61,7 @@ class Quantity:
 
 
 def find(result: ResultFile, name: str) -> Quantity:
-    """The history with this name; if no history has this name, a Fault lists the names that exist."""
+    """The history with a given name; if no history has this name, a Fault lists the names that exist."""
     place, slash, field = name.rpartition("/")
     matched = NAME.fullmatch(place + slash + known(field, {path.rpartition("/")[2] for path in result.histories}))
     if matched is None:

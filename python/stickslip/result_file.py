@@ -70,7 +70,7 @@ class ResultFile:
             return self._found[name]
 
     def has(self, name: str) -> bool:
-        """Whether the file has a dataset or a group of this path."""
+        """Whether the file has a dataset or a group with a given path."""
         with self.reading(name):
             return name in self._found or name in self.file
 
@@ -148,7 +148,7 @@ class ResultFile:
 
     @cached_property
     def middles(self) -> dict[int, tuple[int, int]]:
-        """The two corners of each side with a node between its corners, by this node."""
+        """For each node between two corners of a side, these two corners."""
         found: dict[int, tuple[int, int]] = {}
         for cell in self.cells:
             if len(cell) > 4:
@@ -221,7 +221,8 @@ class ResultFile:
         return rows
 
     def _complete(self, group: str, datasets: Iterable[Sized]) -> int:
-        """Complete rows of the datasets of a group; files of older programs do not state this number."""
+        """Complete rows of the datasets of a group; files of older programs do not state the number of complete
+        rows."""
         rows = min(map(len, datasets), default=0)
         return min(rows, int(self.file[group].attrs.get("rows", rows)))
 

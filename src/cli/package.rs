@@ -59,7 +59,7 @@ impl Python {
         }
     }
 
-    /// A command of this interpreter, which does not import modules from the current folder.
+    /// A command of the interpreter, which does not import modules from the current folder.
     fn command(&self) -> Command {
         let mut command = Command::new(&self.path);
         command.arg("-P");

@@ -135,7 +135,7 @@ impl Circle {
 /// the hierarchy depends only on the circles.
 #[derive(Debug, Default)]
 pub struct CircleTree {
-    /// The members with their indices; every group is a range of this list.
+    /// The members with their indices; every group is a range of the list.
     members: Vec<(Circle, u32)>,
     /// Circle and range of every group: group 1 contains all members, and the groups 2k and 2k + 1 are the halves of
     /// group k.

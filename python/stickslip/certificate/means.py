@@ -194,7 +194,7 @@ class Means:
 
     def _closed_vertices(self) -> Iterator[list[Column]]:
         """Force rows on the slave of vertices that are closed at the end of the increment, along two directions for
-        each vertex. Such vertices touch the straight lines between the nodes."""
+        each vertex. Closed vertices touch the straight lines between the nodes."""
         x, noise = self.at[1][0], 16 * np.finfo(float).eps * np.abs(self.at[1][0]).max()
         for (vertices, (faces, bulges)), is_slave in zip(self.vertices, (True, False), strict=True):
             a = x[faces[:, 0]]

@@ -120,8 +120,8 @@ def distances(point: Array, start: Array, end: Array, bulges: Bulges | None = No
 
 
 def between_chord_and_curve(point: Array, start: Array, end: Array, bulges: Bulges) -> Integers:
-    """Winding number of curved edges around points minus the winding number of their chords [points, edges]. It is 1
-    for a point between a chord and a curve outside of it, and -1 if the curve is inside."""
+    """Winding number of curved edges around points minus the winding number of their chords [points, edges]. The result
+    is 1 for a point between a chord and a curve outside of it, and -1 if the curve is inside."""
     if not bulges.coefficients.any():
         return np.zeros((len(point), len(start)), np.int64)
     gap, height, over = _across(point, start, end, bulges)

@@ -152,7 +152,7 @@ def overlay(rows: Sequence[Sequence[Shown]], window: Box | None = None) -> Figur
 
 
 def check_film(path: Path) -> None:
-    """Raises a Fault if no animation with this name can be written."""
+    """Raises a Fault if no animation with the given file name can be written."""
     if path.suffix == ".gif":
         return
     if path.suffix not in FILMS:
@@ -237,7 +237,7 @@ def chosen_times(results: Result, times: list[float] | None, interval: float | N
     """The given times, or multiples of an interval, or times that represent the whole run.
 
     The representative times are the start, the ends of the steps and the time of the largest value of the field.
-    Further times between these are added, up to six times in all.
+    Further times between the representative times are added, up to six times in all.
     """
     if times:
         return np.array(times)

@@ -1,8 +1,8 @@
 """Arrays as short text for a page.
 
-The values v of an array are mapped to whole numbers q, whose differences from row to row are small. The bytes of these
-differences are sorted by significance, deflated and written in base64; `page/decode.js` reverses all this. Three maps
-lead from values to whole numbers:
+The values v of an array are mapped to whole numbers q, whose differences from row to row are small. The bytes of the
+differences are sorted by significance, deflated and written in base64; `page/decode.js` reverses these three
+operations. Three maps lead from values to whole numbers:
 
 * `linear`: the value is v = step q; the error is at most step/2;
 * `curved`: the value is v = small sinh(fine q); the error is about fine/2 times the value, or times `small` if `small`

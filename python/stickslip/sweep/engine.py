@@ -62,8 +62,8 @@ def sweep(
 ) -> Table:
     """Runs a deck at some points (values of its parameters by name) and returns the table of the study.
 
-    `output` is a folder that all workers can access. Points that have already ended in this folder are not run again. A
-    point that fails has a row with its error message.
+    `output` is a folder that all workers can access. Points that have already ended in the folder `output` are not run
+    again. A point that fails has a row with its error message.
     """
     chosen = [Quantity.parse(text) for text in dict.fromkeys(quantities)]
     if not points:

@@ -323,7 +323,7 @@ fn takes(level: Level, card: &Card) -> bool {
     }
 }
 
-/// Place in the deck where a card of these levels belongs, in words.
+/// Place in the deck where a card of the given levels belongs, in words.
 fn advice(levels: Levels) -> &'static str {
     if levels.has(Level::Part) && !levels.has(Level::Assembly) {
         "put it between *PART and *END PART"

@@ -18,7 +18,7 @@ pub struct Card {
     pub span: Span,
     /// Whether an error of the keyword line has been reported.
     pub faulty: bool,
-    /// Whether the deck of a later job adds this card to the model of the earlier job.
+    /// Whether the deck of a later job adds the card to the model of the earlier job.
     pub added: bool,
     /// Data lines of the card.
     pub rows: DataLines,

@@ -47,7 +47,7 @@ impl Deck {
         cards.filter(move |card| card.keyword.name == keyword)
     }
 
-    /// Number of the instance with this name.
+    /// Number of the instance with a given name.
     pub fn instance(&self, key: &str) -> Option<u32> {
         let mut all = self.instances.iter().zip(1..);
         let found = all.find(|(instance, _)| instance.name.key == key);

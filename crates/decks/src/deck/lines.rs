@@ -354,7 +354,7 @@ fn before_keyword(text: &str) -> usize {
     bytes.len()
 }
 
-/// The byte at which the first line of more than `most` bytes exceeds this length; the CR of a CRLF also counts.
+/// The byte at which the first line of more than `most` bytes exceeds `most` bytes; the CR of a CRLF also counts.
 pub(super) fn overlong(text: &[u8], most: usize) -> Option<usize> {
     let mut start = 0;
     while text.len() - start > most {

@@ -69,7 +69,7 @@ pub(super) fn name(typed: &str) -> String {
     }
 }
 
-/// A short text that reads as exactly this number.
+/// A short text that reads as exactly the given number.
 pub(super) fn number(value: f64) -> String {
     let (plain, scientific) = (format!("{value:?}"), format!("{value:e}"));
     match plain.len() <= SHORT || plain.len() <= scientific.len() {

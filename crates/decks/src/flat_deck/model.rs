@@ -509,7 +509,7 @@ fn point(word: &str, node: usize, mesh: &Mesh) -> [String; 3] {
     [word.to_owned(), x, y]
 }
 
-/// The set of exactly these elements.
+/// The set that consists of exactly the given elements.
 pub(super) fn set_of<'m>(elements: &[usize], model: &'m Model) -> Option<&'m str> {
     let mut sets = model.sets.elements.iter();
     let found = sets.find(|set| set.members == elements)?;

@@ -123,7 +123,7 @@ impl Supports {
         held.or_else(|| self.removed.get(&dof).copied())
     }
 
-    /// Ends a step of this duration: displacements that follow an amplitude in step time keep their last value.
+    /// Ends a step of a given duration: displacements that follow an amplitude in step time keep their last value.
     pub fn end_step(&mut self, period: f64, amplitudes: &[Amplitude]) {
         for held in self.held.values_mut() {
             held.motion = held.motion.after_step(period, amplitudes);

@@ -1,5 +1,5 @@
-//! Quadrilaterals of the deck with two neighbouring corners at one node become triangles. The sides of such a triangle
-//! keep their numbers in the quadrilateral.
+//! Quadrilaterals of the deck with two neighbouring corners at one node become triangles. The sides of a triangle made
+//! from a quadrilateral keep their numbers in the quadrilateral.
 
 use smallvec::SmallVec;
 
@@ -17,7 +17,7 @@ pub(super) struct Collapsed {
 }
 
 impl Collapsed {
-    /// The triangle that an element with nodes of these labels becomes; `None` if the element is no quadrilateral with
+    /// The triangle that an element with nodes of given labels becomes; `None` if the element is no quadrilateral with
     /// exactly one side of no length, or if there is no such triangle.
     pub fn new(element_type: ElementType, labels: &[u64]) -> Option<Collapsed> {
         let (shape, is_plain) = match (element_type.shape, element_type.formulation) {

@@ -148,7 +148,7 @@ impl<'a> Context<'a> {
         Some(label(text.span.instance, number))
     }
 
-    /// Whether a row of a keyword, such as `*NODE`, begins with this label.
+    /// Whether a row of a keyword, such as `*NODE`, begins with a given label.
     pub fn defines(&self, keyword: &str, label: u64) -> bool {
         let cards = self.deck.cards_of(keyword);
         let rows = cards.flat_map(|card| card.rows.iter());
@@ -156,7 +156,7 @@ impl<'a> Context<'a> {
         labels.any(|known| known == label)
     }
 
-    /// Name of the node or element with this label in the words of the deck.
+    /// Name of the node or element with a given label in the words of the deck.
     pub fn named(&self, label: u64) -> String {
         let index = (instance_of(label) as usize).checked_sub(1);
         let instance = index.and_then(|index| self.deck.instances.get(index));
@@ -258,7 +258,7 @@ impl Catalogue {
         Catalogue { kinds }
     }
 
-    /// A kind other than `kind` among the objects with this key.
+    /// A kind other than `kind` among the objects with a given key.
     pub fn other_kind(&self, name: &str, kind: &str) -> Option<&'static str> {
         let kinds = self.kinds.get(name)?;
         kinds.iter().copied().find(|other| *other != kind)

@@ -666,7 +666,7 @@ pub(super) struct CarriedLoad<T> {
     end: f64,
     /// Number of the step that gave the load.
     step: u32,
-    /// Whether another load has replaced this one.
+    /// Whether another load has replaced the load.
     replaced: bool,
 }
 

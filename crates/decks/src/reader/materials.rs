@@ -216,7 +216,7 @@ fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
     })
 }
 
-/// The metal of `*ELASTIC` and `*PLASTIC`. The elastic strains of this metal are logarithmic (Hencky), with or without
+/// The metal of `*ELASTIC` and `*PLASTIC`. The elastic strains of the metal are logarithmic (Hencky), with or without
 /// TYPE=HENCKY in the deck.
 fn metal(elasticity: &Card, plasticity: &Card, cx: &mut Context) -> Constant<Law> {
     let is_of_metals =
@@ -498,7 +498,7 @@ fn positive_c10(c10: Text, cx: &mut Context) -> Option<f64> {
 }
 
 /// Ratio K/mu of a material with D1 = 0. In plane stress, at stretches from 0.5 to 1.5, the force of a material with
-/// this ratio differs from the force of an incompressible material by at most 5e-5 of the force.
+/// K/mu = 1e4 differs from the force of an incompressible material by at most 5e-5 of the force.
 const NEARLY_INCOMPRESSIBLE: f64 = 1e4;
 
 /// Reads D1 in field `index` of a material with the shear modulus mu = 2 c; zero means K = 1e4 mu:

@@ -95,7 +95,7 @@ pub(crate) struct ConnectorKind {
 }
 
 impl ConnectorKind {
-    /// The type with this name, in capitals without blanks.
+    /// The type with a given name, in capitals without blanks.
     pub fn from_name(name: &str) -> Option<Self> {
         let families = [
             ("SPRING", ConnectorLaw::Spring),
@@ -112,7 +112,7 @@ impl ConnectorKind {
         })
     }
 
-    /// Number of nodes of an element of this type.
+    /// Number of nodes of an element of the type.
     pub fn nodes(self) -> usize {
         if self.form == '1' { 1 } else { 2 }
     }
@@ -187,7 +187,7 @@ impl MeshIndex {
         }
     }
 
-    /// Adds nodes without element at these points; their numbers follow the largest number of a node.
+    /// Adds nodes without element at given points; the numbers of these nodes follow the largest number of a node.
     pub fn add_points(&mut self, points: &[[f64; 2]]) {
         let largest = self.mesh.node_labels.iter().max().copied().unwrap_or(0);
         let labels = (1..).map(|i| largest.saturating_add(i));

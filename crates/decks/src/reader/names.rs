@@ -10,7 +10,7 @@ use std::collections::HashMap;
 /// The names of one kind of object, numbered in the order of definition.
 pub(super) struct Names {
     what: &'static str,
-    /// Whether parts may define such names, once for each of their instances.
+    /// Whether parts may define names of this table, once for each of their instances.
     of_parts: bool,
     index: HashMap<String, Option<usize>>,
     typed: Vec<Name>,
@@ -166,7 +166,7 @@ impl<T> Named<T> {
         }
     }
 
-    /// The object with this name; an undefined name is reported.
+    /// The object with a given name; an undefined name is reported.
     pub fn find(&self, name: Text, cx: &mut Context) -> Option<&T> {
         self.all.get(self.names.find(name, cx)?)
     }
@@ -180,7 +180,7 @@ impl Labelled {
     /// A node or element that is left out, after a message about it.
     pub const LEFT_OUT: Labelled = Labelled(u32::MAX);
 
-    /// The node or element with this index.
+    /// The node or element has this index.
     pub fn new(index: usize) -> Labelled {
         Labelled(index as u32)
     }
@@ -238,7 +238,7 @@ impl Labels {
         self.index.get(label).copied()
     }
 
-    /// Index of the node or element with this number; a number that does not exist is reported.
+    /// Index of the node or element with a given number; a number that does not exist is reported.
     pub fn find(&self, text: Text, cx: &mut Context) -> Option<usize> {
         let label = self.label(text, cx)?;
         match self.get(label) {

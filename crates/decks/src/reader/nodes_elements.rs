@@ -529,7 +529,7 @@ impl ElementKind {
         }
     }
 
-    /// Number of nodes of an element of this kind.
+    /// Number of nodes of an element of the kind.
     pub fn nodes(self) -> usize {
         match self {
             ElementKind::Plane(element_type) => element_type.topology().nodes,
@@ -541,7 +541,7 @@ impl ElementKind {
     }
 }
 
-/// The kind of elements with this name.
+/// The kind of elements with a given type name.
 pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<ElementKind> {
     let folded = name.name_key();
     match folded.as_str() {

@@ -15,7 +15,7 @@ pub(crate) struct CardBlock<'a> {
 }
 
 impl<'a> CardBlock<'a> {
-    /// The cards of the block with this keyword.
+    /// The cards of the block with a given keyword.
     pub fn parts_of(&self, keyword: &str) -> Vec<&'a Card> {
         let parts = self.parts.iter().copied();
         parts.filter(|card| card.keyword.name == keyword).collect()
@@ -63,12 +63,12 @@ impl<'a> Outline<'a> {
         outline
     }
 
-    /// Cards with this keyword that begin blocks of the model.
+    /// Cards with a given keyword that begin blocks of the model.
     pub fn model_cards(&self, keyword: &str) -> Vec<&'a Card> {
         self.blocks(keyword).map(|block| block.head).collect()
     }
 
-    /// Blocks that begin with this keyword.
+    /// Blocks that begin with a given keyword.
     pub fn blocks(&self, keyword: &str) -> impl Iterator<Item = &CardBlock<'a>> {
         self.model
             .iter()
@@ -172,7 +172,7 @@ impl<'a> Outline<'a> {
         last.filter(|block| block.head.keyword.name == head)
     }
 
-    /// Whether the last card belongs to a step and has this keyword.
+    /// Whether the last card belongs to a step and has a given keyword.
     fn is_after(&self, of_step: &str) -> bool {
         let step = self.steps.last().filter(|_| self.open && !self.in_model);
         let last = step.and_then(|step| step.cards.last());

@@ -48,7 +48,7 @@ impl Requests {
         }
     }
 
-    /// `*RESTART, WRITE`: checkpoints from this step on.
+    /// `*RESTART, WRITE`: checkpoints from the current step on.
     pub fn restart(&mut self, card: &Card, cx: &mut Context) {
         if !card.has("WRITE") {
             return;

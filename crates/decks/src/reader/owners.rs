@@ -35,11 +35,11 @@ pub(crate) enum Owner<'a> {
     Link(&'a Link),
     /// A spring or dashpot, with its ends.
     Connector(&'a ConnectorElement),
-    /// A node with mass.
+    /// A point element, which has a node with mass.
     Point(&'a PointElement),
-    /// The first term of an equation.
+    /// A card `*EQUATION`, by the first term of an equation.
     Equation(Span),
-    /// A prescribed motion.
+    /// A card that prescribes a motion.
     Support(Span),
 }
 

@@ -449,7 +449,7 @@ pub(crate) fn carrier<'a>(nodes: &[usize], rigid_bodies: &'a [Rigid]) -> Option<
     rigid_bodies.iter().find(rides)
 }
 
-/// Dof of the angle of the rigid body with this number among all bodies of a mesh.
+/// Dof of the angle of the rigid body with a given number among all bodies of a mesh.
 pub(super) fn angle_dof(number: usize, mesh: &Mesh) -> usize {
     2 * (mesh.node_count() + 2 * number + 1)
 }

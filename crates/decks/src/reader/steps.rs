@@ -471,9 +471,9 @@ fn time_or(row: Line, index: usize, default: f64, cx: &mut Context) -> Option<f6
     Some(if time == 0.0 { default } else { time })
 }
 
-/// The first increment of a dynamic step. If the deck does not give this increment and increments are automatic, the
-/// first increment is `guide`, the time of a wave through the shortest side of an element, within bounds relative to
-/// the duration.
+/// The first increment of a dynamic step. If the deck does not give the first increment and increments are automatic,
+/// the first increment is `guide`, the time of a wave through the shortest side of an element, within bounds relative
+/// to the duration.
 fn first_increment(
     row: Line,
     (direct, period): (bool, f64),
@@ -598,7 +598,7 @@ pub(crate) const SOLVER: Choice<SolverChoice> = Choice(
 );
 
 impl<T: Copy + PartialEq> Choice<T> {
-    /// Changes a setting to the word on a card, if the card has this parameter.
+    /// Changes a setting to the word on a card, if the card has the parameter of the setting.
     fn set(&self, card: &Card, setting: &mut T) {
         let typed = card.choice(self.0);
         if let Some((_, chosen)) = self.1.iter().find(|(word, _)| Some(*word) == typed) {

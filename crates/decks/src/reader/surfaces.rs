@@ -286,7 +286,7 @@ pub(crate) fn side_count(mesh: &Mesh, element: usize) -> usize {
     mesh.elements.get(element).map_or(0, |e| e.side_count())
 }
 
-/// Exterior sides of these elements, in order; the list leaves out sides on the axis of bodies of revolution.
+/// Exterior sides of given elements, in order; the list leaves out sides on the axis of bodies of revolution.
 fn exterior_faces(elements: &[usize], at_nodes: &ElementsAtNodes, mesh: &Mesh) -> Vec<Face> {
     let sides =
         |&element: &usize| (0..side_count(mesh, element)).map(move |side| Face { element, side });

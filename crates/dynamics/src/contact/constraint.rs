@@ -1,6 +1,6 @@
 //! A contact constraint, linearised at the current iterate: gap and slip, the rows of its force,
 //! and the derivatives of gap and slip. The complementarity problem, contact forces, impulses,
-//! convergence and ledger know only this constraint of contact. See docs/theory/contact.md and
+//! convergence and ledger know of contact only its constraints. See docs/theory/contact.md and
 //! docs/theory/complementarity.md.
 //!
 //! The configurations between which contact constraints are linearised, and the form of their

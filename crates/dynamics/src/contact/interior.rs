@@ -96,9 +96,9 @@ impl Interior {
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
-    /// Whether a point of a slave face between nodes has penetrated the body through this segment; `xi` and `gap` are
-    /// its place and gap at the segment. Place and gap may be relative to the straight line that stands for a curved
-    /// side. The mid-side node tells how far the side of the element is from this line.
+    /// Whether a point of a slave face between nodes has penetrated the body through a segment; `xi` and `gap` are its
+    /// place and gap at the segment. Place and gap may be relative to the straight line that stands for a curved side.
+    /// The mid-side node tells how far the side of the element is from this line.
     pub fn takes_in_point(
         &self,
         segment: [usize; 2],

@@ -44,9 +44,9 @@ impl SlaveChoice {
 
 /// Writes the pairs of the chosen slave nodes of all contacts, with increasing keys, between the displacements `u0` of
 /// the start and `u` of an iterate, which the search covers. `before` are the constraints of the last pass, also with
-/// increasing keys. `closed_at_start` are the pairs closed at the start. With `kept`, nodes keep targets up to this
-/// overrun beyond the ends (segment lengths), even if they are at other targets, so that passes converge that go to and
-/// fro across a corner.
+/// increasing keys. `closed_at_start` are the pairs closed at the start. Nodes keep targets up to the overrun `kept`
+/// beyond the ends (segment lengths), even if they are at other targets, so that passes converge that go to and fro
+/// across a corner.
 ///
 /// Pairs of contact from surface to surface are points of slave faces, whose rows have the given form.
 ///

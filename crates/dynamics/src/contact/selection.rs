@@ -301,9 +301,9 @@ impl SlaveNode<'_> {
         }
     }
 
-    /// The first segment before or after `from` on which the node projected at the start. The way from `from` to this
-    /// segment leads round corners that are convex or were so at the start, and is at most twice as long as the node's
-    /// displacement.
+    /// The first segment before or after `from` on which the node projected at the start. The way from `from` to the
+    /// returned segment leads round corners that are convex or were so at the start, and is at most twice as long as
+    /// the node's displacement.
     fn walk(&self, from: usize, direction: Along) -> Option<usize> {
         let farthest = 2.0 * self.relative_displacement(from);
         let length = |i: usize| self.project(i).length;

@@ -111,7 +111,7 @@ entries!(SurfacePoint, (usize, SurfacePoint));
 pub enum StartSegment {
     /// The point was over the same segment as at the end.
     Same,
-    /// The point was over another segment, with these ends and this bulge.
+    /// The point was over another segment, with the given ends and bulge.
     Other([Vertex; 2], Bulge),
     /// The point was over no segment: it has come in over the end of the master surface.
     Outside,

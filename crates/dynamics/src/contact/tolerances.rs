@@ -10,7 +10,7 @@
 pub(crate) const SHARP_TURN_COSINE: f64 = 0.5;
 /// Cosine of 30 degrees: beyond this turn in the reference configuration a surface has a corner.
 pub(crate) const CORNER_COSINE: f64 = 0.866;
-/// Sine of the turn in the reference configuration up to which a surface counts as straight. This number also bounds
+/// Sine of the turn in the reference configuration up to which a surface counts as straight. The same number bounds
 /// four times the rise of a mid-side node (side lengths) up to which a side counts as straight.
 pub(crate) const LEAST_TURN: f64 = 1e-4;
 /// Ratio of the turns at both ends of a segment beyond which the segment, a chord of a fine flank that meets a coarse
@@ -97,8 +97,8 @@ pub(crate) const KEPT_BEYOND_ENDS: f64 = 0.1;
 /// Overrun up to which a node keeps its segment once the passes have settled, even if another segment would constrain
 /// it. While passes go to and fro between two targets, `KEPT_BEYOND_ENDS` applies.
 pub(crate) const KEPT_WHEN_SETTLED: f64 = 1e-3;
-/// Overlap below which an open pair stays open once the passes have settled. Without this bound of the overlap a force
-/// could alternate between two nodes that face each other.
+/// Overlap below which an open pair stays open once the passes have settled. Without the bound on the overlap of open
+/// pairs a force could alternate between two nodes that face each other.
 pub(crate) const SETTLED_OVERLAP: f64 = 1e-10;
 /// Slip of a correction along a segment, in lengths of the segment, up to which rows and targets stay: the square of
 /// this number is round-off.
@@ -109,7 +109,7 @@ pub(crate) const SOLVED_GAP: f64 = 1e-12;
 /// a solution of a complementarity problem leaves about as much.
 pub(crate) const LIMIT_SLIP: f64 = 1e-10;
 /// Gap, slip or motion that counts as zero: the round-off of a quantity that is itself round-off of a length. Without
-/// this bound the remains of a motion that has died away would underflow.
+/// the bound for zero the remains of a motion that has died away would underflow.
 pub(crate) const NOTHING: f64 = f64::EPSILON * f64::EPSILON;
 
 /// Round-off of a gap, relative to the coordinates of its nodes.
@@ -130,8 +130,8 @@ pub(crate) const DEPTH_ROUND_OFF: f64 = 1e-9;
 /// Depth of a node behind a segment that a closed mean gap may leave (surface to surface); a deeper node has not been
 /// kept out at all.
 pub(crate) const NODE_DEPTH: f64 = 0.5;
-/// Depth to which a free node may clip a corner on its straight path within an increment. If the
-/// increment is halved, the node need not be inside at this depth.
+/// Depth to which a free node may clip a corner on its straight path within an increment. If an increment is halved, a
+/// node that clips a corner to this depth need not be inside.
 pub(crate) const CORNER_CLIP_DEPTH: f64 = 0.01;
 /// Distance from the end of a segment within which a crossing is at the corner itself.
 pub(crate) const SEGMENT_END: f64 = 1e-6;
@@ -140,11 +140,11 @@ pub(crate) const SEGMENT_END: f64 = 1e-6;
 
 /// Depth of a corner up to which only mean gaps keep the corner out (surface to surface), in lengths of the shortest
 /// face at the corner and on the other surface. The depth is above round-off, so no corner closes where the mean gaps
-/// are closed. A body must turn by about three times this number before the resultant on its face reaches the corner.
-/// With the depth 1e-5, walls of bricks need up to a third more passes.
+/// are closed. A body must turn by about three times the number `CORNER_DEPTH` before the resultant on its face reaches
+/// the corner. With the depth 1e-5, walls of bricks need up to a third more passes.
 pub(crate) const CORNER_DEPTH: f64 = 3e-5;
 /// Depth of a corner on its straight path in an increment that does not count as penetration, in the unit of
-/// `CORNER_DEPTH`. A corner that slides over a segment whose face turns reaches this depth.
+/// `CORNER_DEPTH`. A corner that slides over a segment whose face turns may reach a depth of this size.
 pub(crate) const CORNER_PATH_DEPTH: f64 = 0.05;
 /// Cosine of 20 degrees: a convex vertex that turns by more meets the other surface as a corner.
 pub(crate) const VERTEX_COSINE: f64 = 0.94;
@@ -162,8 +162,8 @@ pub(crate) const SIDE_BY_SIDE: f64 = 1.0;
 pub(crate) const LEAST_CELL: f64 = 1e-13;
 /// Least part of the weight of a slave node that a mean gap must cover.
 pub(crate) const LEAST_COVER: f64 = 1e-6;
-/// Largest tangent of the tilt of the force at a point that has changed its segment. Beyond this tilt a point keeps the
-/// segment of the start, unless the surface turns by half as much.
+/// Largest tangent of the tilt of the force at a point that has changed its segment. Beyond the largest tilt a point
+/// keeps the segment of the start, unless the surface turns by half as much.
 pub(crate) const POINT_TILT: f64 = 0.3;
 
 // Preparation of a model.
@@ -177,8 +177,8 @@ pub(crate) const ADJUSTMENT_REACH: f64 = 1.0;
 
 // Impacts as events.
 
-/// Gap below which a node has met its target at an impact; the node joins the active pairs with
-/// this accuracy.
+/// Gap below which a node has met its target at an impact; this gap is the accuracy with which nodes join the active
+/// pairs.
 pub(crate) const IMPACT_GAP: f64 = 1e-12;
 /// Cosine of the turn between a touched segment and another on to which the node slides without an impact. The angle
 /// corresponds to [`GENTLE_SINE`], up to which one of the two segments is the node's only target.

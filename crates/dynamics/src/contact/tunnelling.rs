@@ -150,7 +150,7 @@ impl NodePath<'_> {
     }
 
     /// The nearest segment at the end, if the node is behind it without a force although it was outside at the start.
-    /// Such a node has come round a corner that has turned concave.
+    /// A node that is behind a segment without a force has come round a corner that has turned concave.
     fn ends_inside(&self, segments: impl Iterator<Item = usize> + Clone) -> Option<usize> {
         let is_own = |i: &usize| self.contact.is_end(self.slave, *i);
         let others = segments.filter(|i| !is_own(i));
@@ -267,7 +267,8 @@ impl NodePath<'_> {
     }
 
     /// Whether a node that may overlap segment `i` is still in front of the line of a neighbour at a convex corner,
-    /// when raised by the allowed overlap. Such a node is, near the corner, outside the body reduced by the overlap.
+    /// when raised by the allowed overlap. A node raised in front of the neighbour is, near the corner, outside the
+    /// body reduced by the overlap.
     fn is_before_corner(&self, i: usize, p: &Projection) -> bool {
         let is_before = |(j, is_next): (Option<usize>, bool)| {
             let Some(q) = j.map(|j| self.project(j, 1.0)) else {

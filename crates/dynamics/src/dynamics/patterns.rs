@@ -38,7 +38,7 @@ pub(super) struct VelocityPattern {
 }
 
 impl VelocityPattern {
-    /// Adds another pattern to this one.
+    /// Adds another pattern to the pattern.
     pub fn add(&mut self, other: &VelocityPattern) {
         let add = |sum: &mut [f64], v: &[f64]| sum.iter_mut().zip(v).for_each(|(s, v)| *s += v);
         add(&mut self.w, &other.w);
@@ -67,8 +67,8 @@ pub(super) fn pattern(
     Ok(VelocityPattern { w, momentum })
 }
 
-/// For every body whether it contains a rigid body that turns in this step; a rigid body whose rotation is held moves
-/// as other bodies do.
+/// For every body whether it contains a rigid body that turns in the step; a rigid body whose rotation is held moves as
+/// other bodies do.
 pub(super) fn turning_bodies(problem: &StepProblem) -> Vec<bool> {
     let mut turns = vec![false; problem.parts.bodies()];
     let turning = problem.unknowns.turning.bodies.iter();

@@ -19,9 +19,9 @@ const OVERLAP_ROUND_OFF: f64 = 1e-12;
 const SUM_ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 /// Brings nodes without mass that carry no force to rest at the end of an increment in which pairs have opened. The
-/// mid-point rule fixes only the mean of start and end, so without the rest the deviation of these nodes would change
-/// its sign in every increment. If no state of rest is found, or a node would pass through a surface on the way, the
-/// nodes stay as they are. Returns the energy that is lost as the nodes come to rest.
+/// mid-point rule fixes only the mean of start and end, so without the rest the deviation of nodes without mass would
+/// change its sign in every increment. If no state of rest is found, or a node would pass through a surface on the way,
+/// the nodes stay as they are. Returns the energy that is lost as the nodes come to rest.
 pub(crate) fn bring_to_rest(
     problem: &StepProblem,
     workspace: &mut Workspace,

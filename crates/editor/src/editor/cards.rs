@@ -18,9 +18,9 @@ const MOST: (usize, usize) = (20, 1000);
 pub(super) enum Scope {
     /// The whole deck.
     Deck,
-    /// The part whose name has this key.
+    /// The part whose name has the given key.
     Part(Arc<str>),
-    /// The instance whose name has this key.
+    /// The instance whose name has the given key.
     Instance(Arc<str>),
 }
 
@@ -337,7 +337,7 @@ impl Cards {
         }
     }
 
-    /// The card to which data lines belong at this point.
+    /// The card to which data lines belong at the present point of reading.
     fn owner(&self) -> Option<usize> {
         let is_owner = |card: &Card| card.head.name() != "INCLUDE";
         self.all.iter().rposition(is_owner)

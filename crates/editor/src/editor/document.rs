@@ -48,7 +48,7 @@ pub(super) struct Spot {
 }
 
 impl Document {
-    /// A document with this text.
+    /// A document with a given text.
     pub fn new(text: &str) -> Document {
         let rope = Rope::from_str(text);
         let lines = text.split('\n').map(Cow::from);

@@ -22,7 +22,7 @@ pub(super) enum What {
 }
 
 impl What {
-    /// Words for this kind of object.
+    /// Words for the kind of object.
     pub fn name(self) -> &'static str {
         match self {
             What::Thing(kind) => kind.name(),
@@ -49,15 +49,15 @@ pub(super) struct Occurrence {
     pub file: usize,
     /// Place of the name, without quotation marks and without the name of its instance.
     pub spot: Spot,
-    /// The name as typed at this place.
+    /// The name as typed at the place.
     pub typed: String,
     /// The object that the name means.
     pub symbol: Symbol,
-    /// Whether this place defines the name.
+    /// Whether the place defines the name.
     pub defines: bool,
     /// Whether the name is defined anywhere.
     pub is_known: bool,
-    /// Whether the name stands between quotation marks at this place.
+    /// Whether the name stands between quotation marks at the place.
     pub is_quoted: bool,
 }
 

@@ -213,14 +213,14 @@ impl Diagnostics {
         self.push(Diagnostic::note(code, span, message))
     }
 
-    /// Adds a warning at `span` unless a warning with the same code and message was added this way before.
+    /// Adds a warning at `span` unless a warning with the same code and message was added by this function before.
     pub fn warning_once(&mut self, code: Code, span: Span, message: impl AsRef<str>) -> Added<'_> {
         self.once(code, message.as_ref(), |message| {
             Diagnostic::warning(code, span, message)
         })
     }
 
-    /// Adds a note at `span` unless a note with the same code and message was added this way before.
+    /// Adds a note at `span` unless a note with the same code and message was added by this function before.
     pub fn note_once(&mut self, code: Code, span: Span, message: impl AsRef<str>) -> Added<'_> {
         self.once(code, message.as_ref(), |message| {
             Diagnostic::note(code, span, message)
@@ -258,7 +258,7 @@ impl Diagnostics {
         Added(self.items.last_mut())
     }
 
-    /// Whether this diagnostic was already added for the same line of the part in another instance.
+    /// Whether a diagnostic was already added for the same line of the part in another instance.
     fn is_of_another_instance(&mut self, diagnostic: &Diagnostic) -> bool {
         let Some(span) = diagnostic.span.filter(|span| span.instance > 0) else {
             return false;

@@ -331,7 +331,7 @@ impl Elements {
 
     /// Potential, at the end of a motion, of the elements that expand, eq. (2.55) (force length): the energy that these
     /// elements store there, and the energy dissipated within the motion. At a constant temperature, the work of the
-    /// internal force is the change of this potential.
+    /// internal force is the change of the potential.
     ///
     /// ```text
     /// Phi(U; T) = min over z of W(U, z; T) + D(z)

@@ -49,7 +49,7 @@ pub trait Chunk: Send + Sync {
     /// Elements (indices).
     fn elements(&self) -> &[usize];
 
-    /// Range of the internal variables of these elements among the variables of all elements.
+    /// Range of the internal variables of the elements among the variables of all elements.
     fn variables(&self) -> Range<usize>;
 
     /// Adds the internal forces of the elements at the end of a motion, or their energy-momentum form, to the sums. The
@@ -142,7 +142,7 @@ where
 {
     /// Indices of the elements, lane after lane and block after block.
     elements: Vec<usize>,
-    /// Node indices, increasing; blocks refer to places in this list. After the increasing indices come the nodes for
+    /// Node indices, increasing; blocks refer to places in the list. After the increasing indices come the nodes for
     /// the places of the last block that no element fills; they repeat the last element.
     nodes: Vec<usize>,
     /// Number of the increasing node indices.

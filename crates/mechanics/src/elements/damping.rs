@@ -136,7 +136,7 @@ mod tests {
         (0..DOFS).map(|i| scale * (k * i as f64).sin()).collect()
     }
 
-    /// The displacements `u` of the nodes, followed by a rotation by an angle.
+    /// The displacements `u` of the nodes, followed by a rotation of all nodes by an angle.
     fn turned(u: &[f64], angle: f64) -> Vec<f64> {
         let (sin, cos) = angle.sin_cos();
         let turn = |n: usize| {

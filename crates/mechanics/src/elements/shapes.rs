@@ -71,7 +71,7 @@ impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
         points.iter().map(|p| p.shape * p.volume).sum()
     }
 
-    /// The integration points with these jacobians, where dh/dX = dh/dr (dX/dr)^-1.
+    /// The integration points with given maps dX/dr, where dh/dX = dh/dr (dX/dr)^-1.
     pub fn points(&self, jacobians: &[Jacobian; P]) -> [IntegrationPoint<N>; P] {
         let point = |p: usize| IntegrationPoint {
             shape: SVector::from(self.values[p]),

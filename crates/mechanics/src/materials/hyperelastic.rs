@@ -21,7 +21,7 @@ use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
 
 /// Norm of dE up to which the correction f is neglected. The correction f changes the energy by a
-/// relative amount of about |dE| or less, which is round-off if |dE| is below this bound.
+/// relative amount of about |dE| or less, which is round-off if |dE| is below the bound.
 pub const NO_CHANGE: f64 = f64::EPSILON;
 
 /// Norm of dE up to which the tangent of S(E_m) is used: the omitted part of the tangent is relatively about |dE|, and

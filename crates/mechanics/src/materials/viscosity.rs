@@ -18,8 +18,8 @@ use super::{Across, Plane, SaintVenantKirchhoff, SmallStrainModuli, StressAtPoin
 ///
 /// The tensor D is the mean of the cofactors of C on the straight path from C0 to C1, so D is positive definite. Here
 /// mu and lambda are the moduli at small strains. With the part dJ/2 G (in the plane) of the first term, the stress
-/// splits into a stress of distortion and a stress of volume. Each of these stresses depends on only one of the two
-/// moduli.
+/// splits into a stress of distortion and a stress of volume. The stress of distortion and the stress of volume depend
+/// on only one of the two moduli each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscosity {
     /// Viscosity of distortion, 2 beta mu (force time/length^2).
@@ -75,8 +75,8 @@ impl Viscosity {
     }
 }
 
-/// Stresses are multiplied by the length of the increment (force time/length^2). The viscous stresses are zero if the
-/// strain does not change; they store no energy, and there is no stress across the plane.
+/// The viscous stresses are multiplied by the length of the increment (force time/length^2). The viscous stresses are
+/// zero if the strain does not change; they store no energy, and there is no stress across the plane.
 impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
     /// Viscous stress times the length of the increment, S_d dt, eq. (4.17).
     #[inline(always)]

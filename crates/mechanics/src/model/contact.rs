@@ -122,7 +122,7 @@ pub struct Circle {
 pub enum Adjust {
     /// Nodes near the surface of the master body, inside or above this surface.
     Within(Reach),
-    /// Nodes of the node set with this index.
+    /// Nodes of the node set with the given index.
     Nodes(usize),
     /// Nodes near the surface, which are moved to a clearance above the surface (length).
     Clearance(f64),
@@ -350,8 +350,8 @@ impl RigidBody {
 pub enum RigidPart {
     /// A rigid surface (index).
     Surface(usize),
-    /// The elements of the set with this name.
+    /// The elements of the set with the given name.
     Elements(String),
-    /// The nodes of the set with this name.
+    /// The nodes of the set with the given name.
     Nodes(String),
 }

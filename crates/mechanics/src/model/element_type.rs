@@ -215,7 +215,7 @@ impl ElementType {
         most
     };
 
-    /// The type with this name in upper case.
+    /// The type with a given name in upper case.
     pub fn from_name(name: &str) -> Option<Self> {
         let at = NAMES.iter().position(|(known, _)| *known == name)?;
         Some(Self::NAMED[at])

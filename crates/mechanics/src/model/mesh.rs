@@ -352,7 +352,8 @@ impl Element {
     }
 
     /// Nodes of the convex polygons into which the outline of an element is divided; the outline itself need not be
-    /// convex. With mid-side nodes these polygons are a triangle at each corner and the polygon between the triangles.
+    /// convex. With mid-side nodes the convex polygons of an element are a triangle at each corner and the polygon
+    /// between the triangles.
     pub fn convex_parts(&self) -> SmallVec<[Nodes; 1]> {
         if !self.element_type.is_quadratic() {
             return [self.nodes.clone()].into_iter().collect();

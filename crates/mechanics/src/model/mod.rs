@@ -3,7 +3,7 @@
 //!
 //! Everything in the model is indexed from 0 in the order of the deck. Vectors over degrees of freedom have `2 N`
 //! entries; dof `2 n + i` is direction i (0 = x, 1 = y) of node n. A rigid body that turns has two more nodes, which
-//! exist only in these vectors: the centre of mass, and a node whose direction 0 is the angle of the body.
+//! exist only in vectors over the dofs: the centre of mass, and a node whose direction 0 is the angle of the body.
 
 mod amplitude;
 mod connector;

@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 
 use super::Thickness;
 
-/// A straight line from a node to the next, with the body on the left; contact uses sides in this form.
+/// A straight line from a node to the next, with the body on the left; contact uses sides in the form of segments.
 pub type Segment = [usize; 2];
 
 /// Nodes of a side from corner to corner, with the element on the left.

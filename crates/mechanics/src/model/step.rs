@@ -139,7 +139,7 @@ pub struct Increments {
     pub dt: f64,
     /// Duration T of the step (time).
     pub period: f64,
-    /// Smallest increment that a cutback may reach (time). By default this least increment is 0; in a static step
+    /// Smallest increment that a cutback may reach (time). By default the smallest increment is 0; in a static step
     /// without DIRECT it is 1e-5 of the duration, or the increment dt if dt is smaller.
     pub dt_min: f64,
     /// Largest increment (time).
@@ -201,7 +201,7 @@ pub enum Variation {
         /// Magnitude at the start of the step.
         from: f64,
     },
-    /// Magnitude times the amplitude with this index.
+    /// Magnitude times the amplitude with the given index.
     Amplitude(usize),
 }
 

@@ -58,7 +58,7 @@ pub enum TieReach {
     Near,
     /// Nodes whose distance from the master is at most a given length.
     Within(f64),
-    /// Nodes of the node set with this index.
+    /// Nodes of the node set with the given index.
     Nodes(usize),
 }
 

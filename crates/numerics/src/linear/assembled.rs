@@ -419,7 +419,7 @@ pub(super) struct BlockSum {
     sum: SymmetricMatrix,
     /// Places (column, row) of the entries of the blocks, in increasing order.
     places: Vec<(usize, usize)>,
-    /// Positions of these places among the values.
+    /// Positions of the places of the blocks among the values.
     positions: Vec<usize>,
     /// Runs of values of the matrix that are also contiguous in the sum.
     runs: Vec<ConsecutiveValues>,

@@ -1,4 +1,4 @@
-//! Symmetric sparse matrices, stored by columns with both triangles; copies share their pattern. These matrices are own
+//! Symmetric sparse matrices, stored by columns with both triangles; copies share their pattern. The matrices are own
 //! code, because `sprs` stores indices of 8 bytes and does not share the storage of its pattern, so each solver would
 //! need a copy.
 

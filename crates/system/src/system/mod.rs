@@ -67,8 +67,8 @@ pub fn is_at(file: &File, path: &Path) -> bool {
 /// Reserves disk space for `length` bytes of a file behind its first `from` bytes; the size of the file stays the same.
 ///
 /// # Errors
-/// `StorageFull`, `QuotaExceeded` or `FileTooLarge` means that the disk lacks this space; any other error means that
-/// the system or the file system cannot reserve space.
+/// `StorageFull`, `QuotaExceeded` or `FileTooLarge` means that the disk lacks the space; any other error means that the
+/// system or the file system cannot reserve space.
 pub fn reserve(file: &File, from: u64, length: u64) -> io::Result<()> {
     here::reserve(file, from, length)
 }
@@ -90,7 +90,8 @@ pub fn in_large_pages(memory: MmapMut) -> MmapMut {
     memory
 }
 
-/// Runs another program in place of this one. The function returns only if the other program cannot be started.
+/// Runs another program in place of the present program. The function returns only if the other program cannot be
+/// started.
 pub fn hand_over(command: &mut Command) -> io::Error {
     here::hand_over(command)
 }

@@ -54,7 +54,7 @@ pub fn keywords() -> impl Iterator<Item = &'static Keyword> + Clone {
     ALL.iter()
 }
 
-/// The keyword with this name; blanks and case do not matter.
+/// The keyword with a given name; blanks and case do not matter.
 pub fn find_keyword(name: &str) -> Option<&'static Keyword> {
     static INDEX: LazyLock<HashMap<String, &'static Keyword>> =
         LazyLock::new(|| keywords().map(|k| (fold(k.name), k)).collect());

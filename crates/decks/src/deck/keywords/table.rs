@@ -1,4 +1,5 @@
-//! The keyword table from its texts, `mesh.txt` and further files in this folder, one for each family of keywords:
+//! The keyword table from its texts, `mesh.txt` and further files in the folder of this module, one for each family of
+//! keywords:
 //!
 //! ```text
 //! *AMPLITUDE @ model step, required           its levels, and its data lines

@@ -54,7 +54,7 @@ impl Levels {
         self.0 & Levels::of(&[level]).0 != 0
     }
 
-    /// Whether cards of these levels belong to the mesh or join its parts: such cards define objects to which steps
+    /// Whether cards of some levels belong to the mesh or join its parts: such cards define objects to which steps
     /// refer.
     pub fn are_of_mesh(self) -> bool {
         self.has(Level::Part) || self.has(Level::Assembly)
@@ -74,14 +74,14 @@ impl Levels {
 /// Where a keyword may stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
-    /// The keyword stands by itself, at these levels.
+    /// The keyword stands by itself, at the given levels.
     At(Levels),
-    /// The keyword stands in the block of the keyword with this name.
+    /// The keyword stands in the block of the named keyword.
     Block(&'static str),
     /// The keyword stands in the block of the first named keyword (at the model level), or right after the second named
     /// keyword (in a step).
     BlockOrAfter(&'static str, &'static str),
-    /// The keyword stands in the block of the keyword with this name, or by itself at the level of the model.
+    /// The keyword stands in the block of the named keyword, or by itself at the level of the model.
     BlockOrModel(&'static str),
     /// The keyword begins or ends a part, an instance or the assembly.
     Structure,
@@ -190,7 +190,7 @@ impl Kind {
         }
     }
 
-    /// The kind with this name.
+    /// The kind with a given name.
     fn named(name: &str) -> Option<Kind> {
         Kind::ALL.into_iter().find(|kind| kind.name() == name)
     }
@@ -236,7 +236,7 @@ impl Keyword {
         both.filter(|name| !name.is_empty())
     }
 
-    /// The parameter with this name; blanks and case do not matter.
+    /// The parameter with a given name; blanks and case do not matter.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         let folded = fold(name);
         let is_meant = |p: &&Parameter| [p.name, p.other].map(fold).contains(&folded);
@@ -254,7 +254,7 @@ impl Keyword {
         }
     }
 
-    /// Kind of the object that a card of this keyword defines or extends, and the parameter that names the object.
+    /// Kind of the object that a card of the keyword defines or extends, and the parameter that names the object.
     pub fn definition(&self) -> Option<(&'static Parameter, Kind)> {
         let mut parameters = self.parameters.iter();
         parameters.find_map(|parameter| match parameter.holds {
@@ -286,9 +286,9 @@ pub enum Takes {
     Value,
     /// The value may be left out.
     Optional,
-    /// The value is one of these words.
+    /// The value is one of the listed words.
     Choice(&'static [Value]),
-    /// The value is one of these words, or the value is left out.
+    /// The value is one of the listed words, or the value is left out.
     OptionalChoice(&'static [Value]),
 }
 
@@ -350,15 +350,15 @@ impl Parameter {
 pub enum Quantity {
     /// A word, a label, or a number that is the same in all units.
     Plain,
-    /// A number of this dimension, written as in the result file: `mass/length^3`.
+    /// A number of the given dimension, written as in the result file: `mass/length^3`.
     Of(&'static str),
     /// A number of the given dimension, and its default.
     OfOr(&'static str, &'static str),
-    /// A number of this dimension, or the name of an object of this kind.
+    /// A number of the given dimension, or the name of an object of the given kind.
     OrName(&'static str, Kind),
-    /// The name of an object of this kind; a word or a label may stand in its place.
+    /// The name of an object of the given kind; a word or a label may stand in its place.
     Name(Kind),
-    /// The name of an object of this kind that the card defines or extends.
+    /// The name of an object of the given kind that the card defines or extends.
     New(Kind),
     /// The path of a file; the card reads the file.
     File,
@@ -438,12 +438,12 @@ impl Field {
 /// The fields of one form of data line, and the conditions under which a line has this form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DataLineForm {
-    /// Parameter and value of the keyword line for which lines have this form; an empty value stands for a parameter
+    /// Parameter and value of the keyword line for which lines have the form; an empty value stands for a parameter
     /// without value.
     pub parameter: Option<(&'static str, &'static str)>,
-    /// Number of a field, from 0, and the words that may stand in this field in lines of this form.
+    /// Number of a field, from 0, and the words that may stand in this field in lines of the form.
     pub word: Option<(usize, &'static [&'static str])>,
-    /// Whether only the first data line has this form.
+    /// Whether only the first data line of a card may have the form.
     pub first: bool,
     /// The fields between commas.
     pub fields: &'static [Field],
@@ -468,8 +468,9 @@ impl DataLineForm {
         self.fields.get(index).copied()
     }
 
-    /// Whether a line with these `fields` has this form. `is_first` says whether the line is the first of its card;
-    /// `given` is the value of a parameter of the card: empty for a parameter without value, `None` for an absent one.
+    /// Whether a line with the given `fields` has the form. `is_first` says whether the line is the first of its card;
+    /// `given` is the value of a parameter of the card: empty for a parameter without value, `None` for an absent
+    /// parameter.
     pub fn fits<'w>(
         &self,
         fields: &[&str],

@@ -212,7 +212,7 @@ impl Displacements {
         }
     }
 
-    /// Displacements at the end of a step that starts at this time.
+    /// Displacements at the end of a step that starts at a given time.
     fn after(&self, model: &Model, step: &Step, start: f64) -> Self {
         let end = |&Support { dof, motion }: &Support| {
             let u = match motion {

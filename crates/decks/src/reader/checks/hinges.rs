@@ -8,7 +8,7 @@ use crate::reader::context::Context;
 use crate::vectors::{difference, length};
 
 /// Relative size of the part of a row of C that is independent of earlier rows; below this size the row follows from
-/// earlier rows. The square of this size is the bound below which a run counts an eigenvalue as zero.
+/// earlier rows. The square of the relative size is the bound below which a run counts an eigenvalue as zero.
 const FOLLOWS: f64 = 1e-6;
 
 /// Reports hinges whose rows of C in eq. (11.8) follow from earlier rows and the supports of a step: with such hinges

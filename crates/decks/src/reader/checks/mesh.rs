@@ -260,8 +260,8 @@ pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &[Span], cx
         .help("the elements part there: merge the nodes, or define contact between the surfaces");
 }
 
-/// The largest whole number that is at most x. The processors for which the program is built have no instruction for
-/// this rounding, only an instruction that cuts off the digits behind the point.
+/// The largest whole number that is at most x. The processors for which the program is built have no instruction that
+/// rounds down, only an instruction that cuts off the digits behind the point.
 fn floor(x: f64) -> f64 {
     if x.abs() > MOST_WHOLE {
         return x.floor();
@@ -348,13 +348,13 @@ impl Grid {
         }
     }
 
-    /// Adds a node to the cell with the first of these columns and rows.
+    /// Adds a node to the cell with the first of the given columns and rows.
     fn add(&mut self, node: usize, [[i, _], [j, _]]: [[u64; 2]; 2]) {
         let key = self.key(i, j);
         self.before[node] = std::mem::replace(&mut self.last[key], node as u32);
     }
 
-    /// Visits the nodes in the cells with these columns and rows.
+    /// Visits the nodes in the cells with the given columns and rows.
     fn visit(&self, [columns, rows]: [[u64; 2]; 2], mut visit: impl FnMut(usize)) {
         let count = |[first, other]: [u64; 2]| if first == other { 1 } else { 2 };
         for &i in &columns[..count(columns)] {

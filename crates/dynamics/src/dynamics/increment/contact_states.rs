@@ -41,8 +41,8 @@ impl ContactStates {
 
     /// Writes the constraints of the iterate U, both the constraints that count and the inactive ones; `begins` is true
     /// in the first pass. Pairs that have not slipped get the coefficient of friction at rest, other pairs the
-    /// coefficient at their slip rate. With `kept`, slave nodes keep their targets up to this overrun beyond the ends
-    /// (segment lengths).
+    /// coefficient at their slip rate. Slave nodes keep their targets up to the overrun `kept` beyond the ends (segment
+    /// lengths).
     pub fn find(
         &mut self,
         problem: &StepProblem,

@@ -375,7 +375,7 @@ fn is_coupled(part: &FrictionalLcp) -> bool {
     (1..part.len()).map(coupling).fold(1.0, f64::min) > COUPLING
 }
 
-/// The response u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. This response is
+/// The response u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. The response is
 /// available at the nodes of the constraints at any time, and everywhere at the end.
 pub(super) struct Response<'a> {
     /// Displacements u, over all dofs.

@@ -18,8 +18,8 @@ pub(super) const ROUND_OFF: f64 = 100.0;
 ///
 /// Forces of pairs that are almost the same keep changing at the rate eps/(eps + lambda), where lambda is the
 /// compliance of the pairs' difference relative to their own compliance. The weight therefore decreases from pass to
-/// pass, which makes the changes of these forces die away faster. If small corrections stay as large as before with the
-/// same weight, the round-off of the gaps moves the forces, and the weight returns to its first value.
+/// pass, which makes the changes of forces of almost equal pairs die away faster. If small corrections stay as large as
+/// before with the same weight, the round-off of the gaps moves the forces, and the weight returns to its first value.
 pub(crate) struct EqualForces {
     tolerance: f64,
     weight: f64,

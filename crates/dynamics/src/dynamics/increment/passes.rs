@@ -22,8 +22,8 @@ use crate::linear::larger;
 /// keep both targets.
 pub(super) const SLOW_PASSES: usize = 10;
 
-/// Largest error of the friction after the last pass, relative to the largest normal force. This largest error is a
-/// tenth of the limit in the certificate.
+/// Largest error of the friction after the last pass, relative to the largest normal force. The largest error of the
+/// friction is a tenth of the limit in the certificate.
 const OWN_FRICTION: f64 = 1e-10;
 
 /// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even if

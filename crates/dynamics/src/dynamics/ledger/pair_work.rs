@@ -188,8 +188,8 @@ impl EndForces {
         sums
     }
 
-    /// Work of the pairs in a static increment that starts from the equilibrium with these forces, and the part of the
-    /// trapezoidal work of tangential forces that friction does not dissipate:
+    /// Work of the pairs in a static increment that starts from the equilibrium `self`, and the part of the trapezoidal
+    /// work of tangential forces that friction does not dissipate:
     ///
     /// ```text
     /// (Pn0.(Bn0 d) + Pn1.(Bn1 d))/2

@@ -62,7 +62,7 @@ pub struct ContactResultant {
     /// Mean coefficient of friction of the closed pairs, weighted by Pn; NaN without closed pairs.
     pub friction_coefficient: f64,
     /// Largest max(|Pt| - mu Pn, 0), or ||Pt| - mu Pn| for a pair that slips, divided by the largest Pn. Without
-    /// contact this error of friction is 0; mu is the coefficient of the law.
+    /// contact the error of friction is 0; mu is the coefficient of the law.
     pub cone_violation: f64,
     /// Distance of the pairs' total impulses from the cone in the increment, with impacts and returns; for a pair whose
     /// total normal impulse pulls, the distance is this pull.

@@ -6,7 +6,7 @@
 pub enum Course {
     /// Corrections grew.
     Growing {
-        /// The corrections grew after the pass with this number.
+        /// The corrections grew after the pass with the given number.
         from: usize,
     },
     /// Pairs went to and fro between two states; the list has one entry for each slave node.

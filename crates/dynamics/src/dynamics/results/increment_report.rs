@@ -87,7 +87,7 @@ pub struct IncrementReport {
     /// Difference between the sums of friction work, wear and heat over the nodes and over the contacts, relative to
     /// the sum of absolute values since the start.
     pub surface_work_difference: f64,
-    /// Landings of this increment.
+    /// Landings in the increment.
     #[serde(skip)]
     pub landings: Vec<Landing>,
     /// Total impulses of the pairs to which energy was given back.
@@ -99,7 +99,7 @@ pub struct IncrementReport {
     /// The body with the largest force that holds a motion which only facets resist.
     #[serde(skip)]
     pub held: Option<Box<Unbalanced>>,
-    /// Counters of the solver in this increment.
+    /// Counters of the solver in the increment.
     pub solver: SolverCounts,
     /// Its passes.
     #[serde(skip)]

@@ -68,8 +68,8 @@ pub struct NodalResults {
     pub mass: Vec<NodeMass>,
 }
 
-/// Results of friction at slave nodes. A list has `N` entries if a contact of the deck has this result, else it is
-/// empty. Entries are NaN at nodes that are not slave nodes.
+/// Results of friction at slave nodes. A list has `N` entries if a contact of the deck has the result of this list,
+/// else the list is empty. Entries are NaN at nodes that are not slave nodes.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct FrictionResults {
     /// Mean coefficient of friction of the closed pairs, weighted by Pn, if the coefficient varies; NaN without closed

@@ -30,8 +30,8 @@ use crate::linear::{LinearError, larger};
 use crate::model::{Incrementation, Procedure, Step};
 use crate::prepare::{PreparedModel, deepest_fault};
 
-/// A static increment may be a jump if its displacement exceeds this multiple of the displacement at the rate of the
-/// last increment.
+/// Ratio of the displacement of a static increment to the displacement at the rate of the last increment, above which
+/// the increment may be a jump.
 const FAR: f64 = 5.0;
 /// Displacement increment, relative to the displacements, below which the increment is not a jump.
 const COUNTS: f64 = 0.01;
@@ -603,8 +603,8 @@ impl<'m, 'o> Runner<'m, 'o> {
     /// Checks that a static increment does not lead to another equilibrium, that is, much farther than at the rate of
     /// the last increment, or (in the first increment) than by the tangent. An increment also passes the check if its
     /// displacement decreases with the length of the increment, or is below the resolution of the passes. Bodies that
-    /// only contact holds are not checked, since they may move freely until contact begins. If there are such bodies,
-    /// the other bodies may move as far as by the tangent.
+    /// only contact holds are not checked, since they may move freely until contact begins. If contact alone holds some
+    /// bodies, the other bodies may move as far as by the tangent.
     fn check_jump(
         &mut self,
         problem: &StepProblem,

@@ -28,8 +28,8 @@ pub(crate) trait TimeControl {
     /// Continues from the end of an accepted interval.
     fn accepted(&mut self, interval: &Interval, how: Ended);
 
-    /// Truncation error above which a converged interval of this length is repeated; `None` if the interval is accepted
-    /// with any error.
+    /// Truncation error above which a converged interval of a given length is repeated; `None` if the interval is
+    /// accepted with any error.
     fn largest_error(&self, _dt: f64) -> Option<f64> {
         None
     }
@@ -43,8 +43,7 @@ pub(crate) trait TimeControl {
     /// The archive belongs to another kind of time control.
     fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError>;
 
-    /// Whether an interval of this length may be cut once more; `dt_min` is the least length that
-    /// the step allows.
+    /// Whether an interval of a given length may be cut once more; `dt_min` is the least length that the step allows.
     fn may_be_cut(&self, dt: f64, dt_min: f64) -> bool {
         self.halvings() < HALVINGS && dt / 2.0 >= dt_min
     }

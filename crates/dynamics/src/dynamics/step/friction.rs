@@ -163,7 +163,7 @@ impl<'m> Frictions<'m> {
     /// the pressure of its forces and whatever coefficients the passes had. For a pair that slips, the two coefficients
     /// enclose the coefficient at its slip rate Bt d/dt, within round-off. For a pair that does not slip, the least
     /// coefficient is 0, and the largest is at least the coefficient at rest. A slip within round-off counts as zero.
-    /// The friction of the pair must lie between mu Pn for these two coefficients.
+    /// The friction of the pair must lie between mu Pn for the least and mu Pn for the largest coefficient.
     pub fn bounds<'c>(
         &self,
         x: &[[f64; 2]],

@@ -7,7 +7,7 @@ use crate::linear::{LinearError, Rotation, Transformation};
 use crate::model::{Model, Step};
 
 /// Least eigenvalue of the matrix of hinge compliances, scaled to a unit diagonal, below which some hinges are
-/// redundant. The eigenvalues of light bodies between heavy bodies are far above this bound.
+/// redundant. The eigenvalues of light bodies between heavy bodies are far above the bound.
 const INDEPENDENT: f64 = 1e-12;
 
 /// The rows of all hinges: gaps C u = u_a - u_b, eq. (11.8), first along x and then along y for

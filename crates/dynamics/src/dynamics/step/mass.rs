@@ -67,8 +67,8 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// Masses of elements, point masses and masses of bodies that turn, over the nodes that carry them.
 pub(super) struct Masses {
     /// Lists of nodes, in this order: for every element (empty for a rigid element), spring and dashpot its nodes; for
-    /// each element with massless nodes the nodes that carry its mass; for masses at nodes the nodes that carry these;
-    /// for every body that turns its centre and angle.
+    /// each element with massless nodes the nodes that carry its mass; for masses at nodes the nodes that carry these
+    /// masses; for every body that turns its centre and angle.
     nodes: Vec<Vec<usize>>,
     /// For every mass the number of its list, and its matrix, n x n column by column.
     of_elements: Vec<(usize, Vec<f64>)>,

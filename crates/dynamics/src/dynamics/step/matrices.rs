@@ -194,7 +194,7 @@ impl StiffnessForm {
         }
     }
 
-    /// Part of the tangents of the elements in this form.
+    /// Part of the tangents of the elements in a form of the stiffness.
     fn part(self) -> TangentPart {
         match self {
             Self::Tangent | Self::Stiffened | Self::Stability => TangentPart::Whole,

@@ -43,7 +43,7 @@ struct PinnedBody {
     body: usize,
     /// Nodes of the body, and the centres of mass of the rigid bodies in it that turn, increasing.
     nodes: Vec<usize>,
-    /// Dofs of the angles of these rigid bodies, with their lengths.
+    /// Dofs of the angles of the rigid bodies that turn, with the lengths of these bodies.
     spins: Vec<Spin>,
     /// Whether the body is rigid, without elements that deform.
     is_rigid: bool,
@@ -289,7 +289,7 @@ impl Pins {
     }
 
     /// The failure of bodies that are not in balance: it names the body with the largest of the forces `f` left at the
-    /// pins. These forces cause the correction `du` at the displacements `u`.
+    /// pins. The forces at the pins cause the correction `du` at the displacements `u`.
     pub fn unbalanceable(&self, problem: &StepProblem, u: &[f64], du: &[f64], f: &[f64]) -> Cause {
         match self.most_unbalanced(problem, u, du, f) {
             Some(unbalanced) => Cause::Unbalanceable(unbalanced),

@@ -225,8 +225,8 @@ impl<'m> Workspace<'m> {
     }
 
     /// Writes the constraints of the chosen slave nodes between the displacements `u0` and `u` of an increment.
-    /// `before` are the constraints of the last pass, and `closed_at_start` the pairs closed at the start. With `kept`,
-    /// slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
+    /// `before` are the constraints of the last pass, and `closed_at_start` the pairs closed at the start. Slave nodes
+    /// keep their targets up to the overrun `kept` beyond the ends (segment lengths).
     pub fn constraints(
         &mut self,
         problem: &StepProblem,
