@@ -27,7 +27,7 @@ pub(super) struct LabelMap<T> {
     runs: Vec<(u64, usize)>,
     /// Values of the labels of all runs.
     values: Vec<T>,
-    /// The label after the largest one of the runs.
+    /// The label behind the largest label of the runs.
     next: u64,
     /// Labels that were added after larger labels.
     others: BTreeMap<u64, T>,

@@ -1,4 +1,4 @@
-//! From cards to the model: the meaning of each keyword, and checks across keywords.
+//! The reader makes a model from cards: it knows the meaning of each keyword, and makes checks across keywords.
 //!
 //! One file per family of keywords. Names and numbers are collected before they are looked up, so the order of a deck
 //! never matters. Names that a faulty card defines are marked, so that their uses are not reported as undefined.

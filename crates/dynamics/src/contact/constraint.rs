@@ -243,7 +243,7 @@ impl Constraint {
         self.dofs.chunks_exact(2).map(|dofs| dofs[0] / 2)
     }
 
-    /// Bn^T Pn + Bt^T Pt at every node.
+    /// Contact force Bn^T Pn + Bt^T Pt at every node of the constraint.
     pub fn nodal_forces(&self, [pn, pt]: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
         let Rows { normal, tangential } = &self.force_rows;
         let force = move |k: usize| normal[k] * pn + tangential[k] * pt;
@@ -256,7 +256,7 @@ impl Constraint {
         self.source.pair.is_of_master
     }
 
-    /// Bn^T Pn + Bt^T Pt at every node of the contact's slave surface.
+    /// Contact force Bn^T Pn + Bt^T Pt at every node of the contact's slave surface.
     pub fn forces_on_slave_surface(
         &self,
         force: [f64; 2],
@@ -279,7 +279,7 @@ impl Constraint {
         }
     }
 
-    /// Bn^T Pn + Bt^T Pt at every slave node.
+    /// Contact force Bn^T Pn + Bt^T Pt at every slave node of the constraint.
     pub fn slave_forces(&self, force: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
         self.nodal_forces(force).take(self.slave_dofs / 2)
     }

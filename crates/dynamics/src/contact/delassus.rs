@@ -168,7 +168,7 @@ struct GroupSum<'a> {
 }
 
 impl GroupSum<'_> {
-    /// Adds or writes the part to Q, column by column.
+    /// Adds the part to Q, or writes it to Q, column by column.
     fn write_to(self, q: &mut [f64]) {
         let on_threads = is_worth_threads(self.members.len());
         let piece = if on_threads { PIECE } else { self.n.max(1) };

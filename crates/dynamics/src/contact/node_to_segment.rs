@@ -182,8 +182,8 @@ fn displacements([start, end]: &[[[f64; 2]; 3]; 2]) -> [f64; 6] {
 /// dxi = (e_t.dr - xi e_t.de)/l + g (e_n.de)/l²,  dl = e_t.de
 /// ```
 ///
-/// Derivatives of discrete gradients are differences of gap rows. End rows turn with the segment, so the derivative of
-/// Bn d is dBn d = Bn - (e_t.w)/l D - (e_n.d_e) dxi.
+/// With discrete gradients the derivatives follow from differences of the gap rows. End rows turn with the segment, so
+/// the derivative of Bn d is dBn d = Bn - (e_t.w)/l D - (e_n.d_e) dxi.
 fn of_chord(rows: &SegmentRows, (form, d): (RowForm, &[f64; 6])) -> OfChord {
     let ([force, derivative], p) = (rows.chord(), &rows.projection);
     let (l, [t, n]) = (p.length, [p.tangent, p.normal]);

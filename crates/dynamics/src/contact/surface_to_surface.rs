@@ -638,7 +638,8 @@ fn slip(start: &Projection, end: &Projection) -> f64 {
 }
 
 impl MeanContact {
-    /// Nodes of a constraint, slave nodes first and the naming node before all, and the number of slave nodes.
+    /// Nodes of a constraint and the number of slave nodes; the first node is the one that names the constraint, and
+    /// slave nodes come before master nodes.
     fn nodes(&self, slave: usize) -> (Recycled<usize>, usize) {
         let mut nodes = Recycled::with_room();
         nodes.push(slave);
@@ -915,8 +916,8 @@ mod tests {
         gaps.sum()
     }
 
-    /// Work of a search over two open chains of nodes, or one that touches itself: pairs of circles compared,
-    /// candidates listed, and points that follow.
+    /// Work of a search over two open chains of nodes, or one that touches itself: numbers of compared pairs of
+    /// circles, of listed candidates, and of the points that result.
     fn work(chains: &[Vec<[f64; 2]>]) -> [usize; 3] {
         let coordinates: Vec<[f64; 2]> = chains.concat();
         let mut first = 0;

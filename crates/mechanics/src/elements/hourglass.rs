@@ -137,11 +137,11 @@ impl<const M: usize> Joint<M> {
 /// Second derivatives with respect to strain and amplitudes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct JointTangent<const M: usize> {
-    /// Derivative with respect to the strain twice.
+    /// Second derivative with respect to the strain.
     pub ee: Matrix4<f64>,
-    /// Derivative with respect to the strain and the amplitudes.
+    /// Mixed second derivative with respect to the strain and the amplitudes.
     pub ey: SMatrix<f64, 4, M>,
-    /// Derivative with respect to the amplitudes twice.
+    /// Second derivative with respect to the amplitudes.
     pub yy: SMatrix<f64, M, M>,
 }
 
@@ -354,11 +354,11 @@ impl<'a, const M: usize> BentMetal<'a, M> {
 /// Second derivatives with respect to strain (11, 22, 33, 2*12) and amplitudes, for the elements of
 /// a block.
 pub struct BlockTangent<const M: usize> {
-    /// Derivative with respect to the strain twice.
+    /// Second derivative with respect to the strain.
     pub ee: TangentLanes,
-    /// Derivative with respect to the strain and the amplitudes.
+    /// Mixed second derivative with respect to the strain and the amplitudes.
     pub ey: [[Lanes; M]; 4],
-    /// Derivative with respect to the amplitudes twice.
+    /// Second derivative with respect to the amplitudes.
     pub yy: ModeStiffness<M>,
 }
 

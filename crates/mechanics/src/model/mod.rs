@@ -62,7 +62,7 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// Sections: material and thickness of elements.
     pub sections: Vec<Section>,
-    /// Springs and dashpots.
+    /// Springs and dashpots of the model.
     pub connectors: Vec<Connector>,
     /// Contacts: one for each data line of `*CONTACT PAIR`, then general contact.
     pub contacts: Vec<Contact>,

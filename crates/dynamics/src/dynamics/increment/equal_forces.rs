@@ -1,7 +1,7 @@
 //! Weight of the equal-force rule: it keeps the forces of pairs that can carry the same force near their forces in the
 //! last pass. See docs/theory/complementarity.md, Equal-force rule.
 
-/// First weight: the part of the compliance of a constraint that keeps its force.
+/// First weight of the rule, as a part of the compliance of a constraint.
 pub(super) const FIRST_WEIGHT: f64 = 1e-5;
 /// Factor on the weight from pass to pass.
 const DECREASE: f64 = 0.1;

@@ -134,8 +134,8 @@ impl ContactLedger {
         sums.map(|sums| (sums.friction_dissipation, sums.sliding))
     }
 
-    /// Enters the returns after an increment, before the increment itself; returns the total impulses of the pairs with
-    /// returns.
+    /// Enters the landing and release returns of an increment; the increment itself must be entered later. Returns the
+    /// total impulses of the pairs with returns.
     pub fn enter_returns(
         &mut self,
         model: &Model,

@@ -262,7 +262,7 @@ impl FreeMotions {
             .map_or(Stability::default(), |answer| answer.stability)
     }
 
-    /// Whether the last answer moves a node farther than the reach.
+    /// Whether the last answer moves a node farther than a pass may move nodes.
     pub fn goes_too_far(&self) -> bool {
         largest(&self.motion(&self.p())) > self.reach
     }

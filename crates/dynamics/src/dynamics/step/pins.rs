@@ -267,8 +267,8 @@ impl Pins {
         all
     }
 
-    /// Stiffness against rotations from forces, given over all dofs, that the iterate does not balance yet, if they
-    /// pull apart. The matrix is over the motions of the pins at the positions `at`:
+    /// Stiffness against rotations from the forces (given over all dofs) that the iterate does not balance yet, if
+    /// these forces pull a body apart. The matrix is over the motions of the pins at the positions `at`:
     ///
     /// ```text
     /// Z_p^-T e max(sum_i x_i.r_i, 0) e^T Z_p^-1,   e the turn      eq. (12.14)
