@@ -246,7 +246,7 @@ class Building(ABC):
         return self.add(f"PRE-TENSION SECTION, NODE={node}, SURFACE={surface}", *rows)
 
     def equation(self, *terms: tuple[int | str, int, float]) -> Self:
-        """Appends a linear equation a1 u1 + a2 u2 + ... = 0; each term is given by its node or node set, direction and
+        """Appends a linear equation: a sum of terms is zero. Each term is given by its node or node set, direction and
         factor.
 
         The displacement of the first term follows from the displacements of the other terms. Node sets give an equation

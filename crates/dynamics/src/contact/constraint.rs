@@ -230,7 +230,7 @@ impl Constraint {
         (0.0..=end).contains(&time).then_some(time)
     }
 
-    /// Adds Bn^T Pn + Bt^T Pt to a vector over all dofs.
+    /// Adds the contact force Bn^T Pn + Bt^T Pt to a vector over all dofs.
     pub fn add_force(&self, [pn, pt]: [f64; 2], force: &mut [f64]) {
         let Rows { normal, tangential } = &self.force_rows;
         for (&dof, (n, t)) in self.dofs.iter().zip(normal.iter().zip(tangential)) {

@@ -39,9 +39,9 @@ struct Arms {
     e: [f64; 2],
     /// |e|
     length: f64,
-    /// pi1 = r.e
+    /// Product pi1 = r.e
     dot: f64,
-    /// pi2 = r x e
+    /// Product pi2 = r x e
     cross: f64,
 }
 

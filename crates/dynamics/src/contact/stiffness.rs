@@ -109,7 +109,8 @@ fn add_block(k: &mut DMatrix<f64>, block: &Matrix6<f64>, places: &[usize; 6]) {
 }
 
 impl Constraint {
-    /// Gn^T Gn, plus Gt^T Gt if the constraint `sticks`, eq. (4.13), over its dofs (dimensionless).
+    /// Matrix Gn^T Gn, plus Gt^T Gt if the constraint `sticks`, by which a closed constraint stiffens K*, eq. (4.13),
+    /// over its dofs (dimensionless).
     pub fn stiffening(&self, sticks: bool) -> DMatrix<f64> {
         let rows = self.derivative_rows();
         let normal = DVector::from_column_slice(&rows.normal);

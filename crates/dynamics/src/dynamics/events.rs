@@ -1,5 +1,6 @@
-//! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact,
-//! whose time solves T(tau) = tau. See docs/theory/impacts.md, Impacts as events.
+//! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact. Their length tau solves
+//! T(tau) = tau, where T is the time of the impact in a trial of length tau. See docs/theory/impacts.md, Impacts as
+//! events.
 
 use super::impact_search::{EventTrial, ImpactSearch};
 use super::increment::{Attempt, Failed, Path, Solved, StaticRates};
@@ -151,8 +152,8 @@ impl FreeMotion<'_> {
         self.first_to_stay(&line_crossings(&motions, self.end))
     }
 
-    /// Time of the first entry of a node that stays inside. A node that leaves the body before the end of the
-    /// subincrement does not count, since the motion between the ends is an estimate.
+    /// Time of the first entry of a node that stays inside. A node that leaves the body again before the end of the
+    /// subincrement does not count, since the motion within the subincrement is an estimate.
     fn first_to_stay(&self, found: &[Crossing]) -> Option<f64> {
         let stays = |&(k, crossing): &(usize, &Crossing)| {
             let is_out = |c: &Crossing| c.direction == CrossingSense::Leaving && c.time < self.end;
@@ -167,14 +168,14 @@ impl<'m> Subincrements<'_, 'm> {
     /// The subincrement up to the earliest impact of a pair that does not touch at the start.
     ///
     /// The whole rest of the increment is tried first. Inactive pairs that overlap at the end of the trial of length
-    /// tau show an impact; the subincrement ends at the first of them,
+    /// tau show an impact; the subincrement ends at the first impact,
     ///
     /// ```text
     /// g(tau) = 0    eq. (6.4)
     /// ```
     ///
-    /// Here g is the gap at the end of a subincrement of length tau. If the whole rest does not converge, the
-    /// second-order motion of the start (paper eq. 50) predicts tau.
+    /// Here g is the gap at the end of a subincrement of length tau. If the whole rest of the increment does not
+    /// converge, the second-order motion of the start (paper eq. 50) predicts the length tau.
     pub fn next(&mut self) -> Result<Subincrement, FailedSubincrement> {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let search = &mut self.workspace.search;
@@ -269,13 +270,13 @@ impl<'m> Subincrements<'_, 'm> {
         }
     }
 
-    /// Solves the whole rest of the increment; nodes land within it.
+    /// Solves the whole rest of the increment; nodes land within this subincrement.
     pub fn rest(&mut self) -> Result<Subincrement, FailedSubincrement> {
         let solved = self.attempt(self.rest.dt, ConstraintSet::All, None)?;
         Ok(self.converged(self.rest.dt, solved))
     }
 
-    /// Length of the subincrement that the motion of the start predicts.
+    /// Length of the subincrement that is predicted by the motion of the start.
     fn predicted(&mut self, active: &mut ActiveConstraints) -> f64 {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let path = Path {
@@ -310,7 +311,7 @@ impl<'m> Subincrements<'_, 'm> {
     }
 
     /// Events of the nodes that enter bodies, and are not kept out of these, within the time tau of a motion. The
-    /// motion is that of a converged subincrement, or a prediction. The nodes that enter in a converged subincrement
+    /// motion is that of a converged subincrement, or a prediction. In a converged subincrement these are nodes that
     /// stay inside to its end, or go through the body.
     fn entries(
         &mut self,

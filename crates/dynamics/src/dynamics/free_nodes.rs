@@ -1,4 +1,4 @@
-//! Nodes without mass that carry no contact force, and the stiffness of the elements at them. See
+//! Nodes without mass that carry no contact force, and the stiffness of the elements at these nodes. See
 //! docs/theory/impacts.md, Releases.
 
 use std::collections::BTreeSet;

@@ -50,7 +50,7 @@ pub(crate) struct ImpactSearch {
 }
 
 impl ImpactSearch {
-    /// A search that begins with the start, as a trial of length zero.
+    /// A search whose first trial is the start of the subincrement, with length zero.
     pub fn new(start: EventTrial) -> Self {
         ImpactSearch {
             before: start,
@@ -60,7 +60,7 @@ impl ImpactSearch {
         }
     }
 
-    /// Records a trial that ends before, or after, an impact.
+    /// Records a trial, which ends before or after an impact.
     pub fn record(&mut self, trial: EventTrial, is_before: bool) {
         self.old = match is_before {
             true => Some(std::mem::replace(&mut self.before, trial)),
@@ -110,7 +110,7 @@ impl ImpactSearch {
 mod tests {
     use super::*;
 
-    /// Number of trials, from the length 1 on, until the root of a gap is found to 1e-10.
+    /// Number of trials until the root of a gap is found to 1e-10; the first trial has the length 1.
     fn trials(gap: impl Fn(f64) -> f64, root: f64) -> Option<usize> {
         let trial = |tau: f64| EventTrial::new(tau, &[gap(tau)], &[]);
         let (mut search, mut tau) = (ImpactSearch::new(trial(0.0)), 1.0);

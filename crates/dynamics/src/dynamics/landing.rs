@@ -93,7 +93,7 @@ impl LandedPair {
 /// A pair that lands, with its load; `None` for a pair that was closed at the start.
 ///
 /// The value D = -Pn (Bn d), eq. (6.5), is the energy that the force of the pair has removed. The load is Gn^T at the
-/// end, whose moments about the end positions cancel, and (Pt/Pn) Gt^T for friction.
+/// end, whose forces have no moment in the end positions, and (Pt/Pn) Gt^T for friction.
 fn landing(
     problem: &StepProblem,
     solved: &Solved,
@@ -263,7 +263,7 @@ pub(super) fn give_back(
 /// (z + z²/2) V'.M V' = sum (D_j - G_j),   eq. (6.12)
 /// ```
 ///
-/// If the sum of the rests is larger than the energy of the vibration, the rests are lost.
+/// If the sum of these rests is larger than the energy of the vibration, the rests are lost.
 fn give_rests(
     problem: &StepProblem,
     bodies: &RigidBodies,

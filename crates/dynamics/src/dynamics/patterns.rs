@@ -7,7 +7,7 @@ use crate::vectors::{cross, difference, dot};
 
 /// A load along whose response energy is given back.
 pub(crate) struct ReturnLoad {
-    /// Nodal forces over all dofs, at the end positions; for a pair they are Gn^T.
+    /// Nodal forces over all dofs, at the end positions; for a pair these forces are Gn^T.
     pub force: Vec<f64>,
     /// Friction that is taken back together with the load.
     pub friction: Option<FrictionLoad>,
@@ -16,13 +16,13 @@ pub(crate) struct ReturnLoad {
     /// Largest absolute value of the share, at which the impulse of the return equals the impulse of the force in the
     /// increment.
     pub most: f64,
-    /// Whether the share may be negative, so a force of the increment is taken back.
+    /// Whether the share may be negative, which means that a force of the increment is taken back.
     pub pulls: bool,
 }
 
 /// The friction of the pair of a load.
 pub(crate) struct FrictionLoad {
-    /// Nodal forces over all dofs; for a pair they are (Pt/Pn) Gt^T.
+    /// Nodal forces over all dofs; for a pair these forces are (Pt/Pn) Gt^T.
     pub force: Vec<f64>,
     /// Work c of friction that the share y = -1 takes back (energy).
     pub work: f64,
@@ -175,7 +175,7 @@ impl RigidBodies {
         vibration.into_iter().enumerate().map(of_dof).collect()
     }
 
-    /// Sums over the dofs of every body of forces or momenta, and of their moments.
+    /// For every body, the sum of forces or momenta over its dofs, and the sum of their moments.
     fn sums(&self, problem: &StepProblem, v: &[f64]) -> Vec<[f64; 3]> {
         let mut sums = vec![[0.0; 3]; self.is_free.len()];
         for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
@@ -193,8 +193,8 @@ impl RigidBodies {
     /// ```
     ///
     /// Here p = M w is the momentum of the pattern, f is the load, and r is the vector from the centre of mass. The
-    /// response of K* alone does not have exactly the momenta of the load: K* belongs to another configuration,
-    /// contains contact stiffness, and its factors may have been turned with the bodies.
+    /// response of K* alone does not have exactly the momenta of the load, because K* belongs to another configuration,
+    /// contains contact stiffness, and may have factors that were turned with the bodies.
     fn correct(&self, problem: &StepProblem, dt: f64, force: &[f64], w: &mut [f64]) {
         let loads = self.sums(problem, force);
         let own = self.sums(problem, &problem.mass.times(w));

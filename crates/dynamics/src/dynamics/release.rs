@@ -76,7 +76,7 @@ struct Releasing<'a, 'm> {
 }
 
 impl Releasing<'_, '_> {
-    /// Displacements with the free nodes at rest: they minimise W - R.u with all gaps >= min(g1, 0). Newton steps
+    /// Displacements with the free nodes at rest, which minimise W - R.u with all gaps >= min(g1, 0). Newton steps
     /// include the contact forces of the pairs that the nodes meet. `None` if the steps do not converge.
     fn rest(&mut self) -> Option<Vec<f64>> {
         let mut u = self.end.u.clone();
@@ -119,7 +119,7 @@ impl Releasing<'_, '_> {
     }
 
     /// Constraints at the displacements `u` that the free nodes can close, without friction: new constraints and the
-    /// constraints of the last pass. The gaps of constraints that free nodes can close are measured from the least
+    /// constraints of the last pass. The gaps of constraints that free nodes can close are measured from their least
     /// allowed value.
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
         let start = &self.end.u;

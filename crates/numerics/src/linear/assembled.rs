@@ -377,7 +377,7 @@ pub struct AddedBlocks {
 }
 
 impl AddedBlocks {
-    /// Adds T_e^T K_e T_e of a symmetric matrix `k` over some dofs; zeros of `k` do not enlarge the pattern.
+    /// Adds the block T_e^T K_e T_e of a symmetric matrix `k` over some dofs; zeros of `k` do not enlarge the pattern.
     pub fn add(&mut self, map: &Transformation, dofs: &[usize], k: &DMatrix<f64>) {
         for (j, &column_dof) in dofs.iter().enumerate() {
             for (i, &row_dof) in dofs.iter().enumerate().filter(|&(i, _)| k[(i, j)] != 0.0) {

@@ -24,9 +24,9 @@ pub use transformation::{Rotation, Transformation};
 /// Sparse factorisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SolverChoice {
-    /// Multifrontal LDL^T with the order that faer finds.
+    /// Multifrontal factorisation LDL^T with the order that faer finds.
     Faer,
-    /// LDL^T of the library sprs-ldl with an AMD permutation.
+    /// Factorisation LDL^T of the library sprs-ldl with an AMD permutation.
     Sprs,
 }
 

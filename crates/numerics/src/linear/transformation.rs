@@ -148,14 +148,14 @@ impl Transformation {
         starts.map(|ends| &self.terms[ends[0]..ends[1]])
     }
 
-    /// T^T v over the unknowns for a vector v over all dofs.
+    /// The product T^T v over the unknowns for a vector v over all dofs.
     pub fn restrict(&self, v: &[f64]) -> Vec<f64> {
         let mut restricted = Vec::new();
         self.write_restricted(v, &mut restricted);
         restricted
     }
 
-    /// T^T v over the unknowns, where T has the derivatives as coefficients.
+    /// The product T^T v over the unknowns, where T has the derivatives as coefficients.
     pub fn restrict_derivatives(&self, v: &[f64]) -> Vec<f64> {
         let mut restricted = vec![0.0; self.unknowns];
         for (dof, value) in v.iter().enumerate() {

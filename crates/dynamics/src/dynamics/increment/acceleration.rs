@@ -7,7 +7,7 @@ use crate::lcp::{Acceleration, IterationStep};
 
 /// Ratio of successive corrections above which passes are slow.
 const SLOW: f64 = 0.1;
-/// Ratio of successive corrections above which the last passes say nothing about the next.
+/// Ratio of successive corrections above which the last passes do not help to predict the next pass.
 const JUMP: f64 = 2.0;
 /// Number of changes from pass to pass that are remembered.
 const MEMORY: usize = 5;
@@ -24,7 +24,7 @@ pub(super) struct CorrectionProgress {
     pub rate: f64,
     /// Correction at which the passes end.
     pub tolerance: f64,
-    /// Whether this pass and the last one may have closed the same pairs.
+    /// Whether the pass and the pass before it may have closed the same pairs.
     pub same_pairs: bool,
 }
 

@@ -21,7 +21,8 @@ use crate::dynamics::step::{
     ClosedConstraints, FactoredState, HeldMotions, Interval, StepProblem, Workspace,
 };
 
-/// Number of passes that an attempt makes in any case; further passes are made only if they will end within MAX PASSES.
+/// Number of passes that an attempt always makes; it makes further passes only if the passes will converge within MAX
+/// PASSES.
 const PATIENCE: usize = 25;
 
 /// Relative difference of lengths up to which subincrements between impacts share the factors of K*.
@@ -110,7 +111,7 @@ impl DynamicAttempt<'_, '_> {
     }
 
     /// The slave nodes whose constraints the passes find at first. The choice is the near nodes if all pairs count,
-    /// factors are kept and velocities tell how far nodes go; otherwise it is all nodes.
+    /// factors are kept and velocities tell how far nodes go; otherwise the choice is all nodes.
     fn choice(&self, rule: FactorRule) -> SlaveChoice {
         match (self.passes.set, rule) {
             (ConstraintSet::All, FactorRule::Kept)

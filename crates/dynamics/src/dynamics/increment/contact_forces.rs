@@ -11,10 +11,9 @@ use crate::dynamics::step::System;
 use crate::lcp::Stability;
 use crate::linear::larger;
 
-/// Number of constraints by which the problem of a pass grows at least if the constraints in the problem leave a body
-/// free.
+/// Number of constraints by which the problem of a pass grows at least, if its constraints leave a body free.
 const FEWEST: usize = 3;
-/// Number of times that the problem of a pass grows because a body is unstable on the constraints in the problem.
+/// Number of times that the problem of a pass grows because a body is unstable under the constraints of the problem.
 const TIPS: usize = 3;
 
 /// Constraints, and the forces (or impulses) of the closed constraints.
@@ -49,7 +48,7 @@ struct Choice {
 }
 
 impl ContactForces {
-    /// The forces of the last increment, without linearised constraints.
+    /// Constraints with only the forces of the last increment, before the first linearisation.
     pub fn without_constraints(closed: &ClosedPairs) -> Self {
         ContactForces {
             closed: closed.clone(),
@@ -110,11 +109,11 @@ impl ContactForces {
     /// = d_p + W (r + Bn^T Pn + Bt^T Pt). Here d_p is the motion of the supports, and r is the sum of all forces except
     /// contact forces (all dofs).
     ///
-    /// Constraints that the last pass left open stay out of the problem at first; in a first pass, constraints that y =
-    /// d_p + W r leaves open stay out. Constraints that overlap under the forces of the problem enter afterwards, so
-    /// the answer is the answer for all constraints. Once the passes have settled, the equal-force rule has a `weight`,
-    /// and constraints enter only if they would overlap by more than round-off. Otherwise a force that two nodes facing
-    /// each other can both carry would go to and fro between them.
+    /// Constraints that the last pass left open stay out of the problem at first. In the first pass, constraints that
+    /// the motion y = d_p + W r leaves open stay out. Constraints that overlap under the forces of the problem enter
+    /// afterwards, so the answer is the answer for all constraints. Once the passes have settled, the equal-force rule
+    /// has a `weight`, and constraints enter only if they would overlap by more than round-off. Otherwise a force that
+    /// two nodes facing each other can both carry would go to and fro between them.
     pub fn solve(
         &mut self,
         [d_p, r]: [&[f64]; 2],

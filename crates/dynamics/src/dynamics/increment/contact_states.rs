@@ -1,5 +1,5 @@
 //! Data of the pairs of an increment by their keys: constraint, contact force and state, impulse, and whether the pair
-//! touches at the start. The pairs closed at the start are part of the state of the start.
+//! touches at the start. The pairs closed at the start belong to the state at the start of the increment.
 
 use super::contact_forces::ContactForces;
 use super::impulses::Impulses;
@@ -16,7 +16,7 @@ pub(crate) struct ContactStates {
     pub impulses: Impulses,
     /// Constraints of the iterate until they are handed over to `forces`, then the constraints of the last pass.
     pub found: Vec<Constraint>,
-    /// Constraints of the iterate that do not count (inactive pairs).
+    /// Constraints of the iterate that take no part in the passes (inactive pairs).
     pub left_out: Vec<Constraint>,
     /// Whether the coefficient of friction of a pair differs from its coefficient in the last pass.
     pub friction_moves: bool,
@@ -39,10 +39,9 @@ impl ContactStates {
         }
     }
 
-    /// Writes the constraints of the iterate U, both the constraints that count and the inactive ones; `begins` is true
-    /// in the first pass. Pairs that have not slipped get the coefficient of friction at rest, other pairs the
-    /// coefficient at their slip rate. Slave nodes keep their targets up to the overrun `kept` beyond the ends (segment
-    /// lengths).
+    /// Writes the constraints of the iterate U, both the active and the inactive constraints; `begins` is true in the
+    /// first pass. Pairs that have not slipped get the coefficient of friction at rest, other pairs the coefficient at
+    /// their slip rate. Slave nodes keep their targets up to the overrun `kept` beyond the ends (segment lengths).
     pub fn find(
         &mut self,
         problem: &StepProblem,

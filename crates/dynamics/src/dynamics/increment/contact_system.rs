@@ -27,8 +27,8 @@ pub(crate) struct Guess {
     pub states: Vec<ContactState>,
     /// Forces of every constraint, if known: of several solutions, the solution near these forces is sought.
     pub forces: Option<Vec<[f64; 2]>>,
-    /// Weight of the nearness of the answer to the known forces; without a weight the nearness
-    /// counts only if the problem has no answer without it.
+    /// Weight by which the answer is kept near the known forces; without a weight the known forces matter only if the
+    /// problem has no answer otherwise.
     pub weight: Option<f64>,
 }
 
@@ -50,7 +50,7 @@ impl Guess {
         self.weight = weight;
     }
 
-    /// Whether the guess has forces but no weight, so that a guess with a weight may have another answer.
+    /// Whether the guess has forces but no weight; with a weight the answer may be another.
     fn has_forces_only(&self) -> bool {
         self.forces.is_some() && self.weight.is_none()
     }
@@ -65,9 +65,9 @@ impl Guess {
 }
 
 impl System<'_> {
-    /// Solves for the forces of the given constraints from the constant terms of their gaps and slips. The pairs that
-    /// carry a force are written to `closed`; returns the number of pivots. With a `response`, problems of many
-    /// constraints are solved by blocks where that is faster.
+    /// Solves for the forces of the given constraints from the constant terms of their gaps and slips. The function
+    /// writes the pairs that carry a force to `closed`, and returns the number of pivots. With a `response`, problems
+    /// of many constraints are solved by blocks where that is faster.
     ///
     /// If the problem with derivative rows has no solution, the problem with force rows in place of the derivative rows
     /// is solved. With force rows Q is symmetric and the theorem of docs/theory/complementarity.md holds, so a ray
@@ -185,12 +185,12 @@ const LEAST: usize = 100;
 /// Number of constraints up to which their list needs no allocation.
 pub(super) const FEW: usize = 128;
 
-/// Least mean number of constraints in a block. The solves of an iteration cost the same for blocks of any size, so
-/// with smaller blocks the iteration is no faster than one solution with all of Q. Two flush faces have up to four
+/// Least mean number of constraints in a block. The solves of a block iteration cost the same for blocks of any size,
+/// so with smaller blocks the iteration is no faster than one solution with all of Q. Two flush faces have up to four
 /// constraints of corners, which seldom carry a force.
 const LEAST_BLOCK: usize = 8;
 
-/// Largest part of the entries of Q within the blocks; with a larger part blocks gain nothing.
+/// Largest part of the entries of Q within the blocks; with a larger part blocks save no time.
 const WITHIN: f64 = 0.25;
 
 /// Number of constraints between the same bodies from which on they are divided along the surfaces.
@@ -263,8 +263,8 @@ impl System<'_> {
     }
 
     /// Solves for the forces of constraints by blocks, where `free` are their gaps and slips without these forces; the
-    /// pairs that carry a force are written to `closed`. Returns the number of pivots, or `None` if blocks gain nothing
-    /// or are coupled too strongly.
+    /// pairs that carry a force are written to `closed`. Returns the number of pivots, or `None` if a solution by
+    /// blocks saves no time or the blocks are coupled too strongly.
     fn solve_by_bodies(
         &mut self,
         response: &mut Response,
@@ -367,7 +367,7 @@ fn are_in_both_orders(constraints: &[&Constraint]) -> bool {
     })
 }
 
-/// Whether the first constraint of a part is coupled strongly to all other constraints of the part; then the part is
+/// Whether the first constraint of a part is coupled strongly to all other constraints of the part; if so, the part is
 /// also coupled strongly to its neighbours.
 fn is_coupled(part: &FrictionalLcp) -> bool {
     let q = |i: usize, j: usize| part.q[(i, j)];
@@ -384,7 +384,7 @@ pub(super) struct Response<'a> {
 }
 
 impl<'a> Response<'a> {
-    /// Begins with the forces `f`, over all dofs, and P = 0.
+    /// Begins a response with the forces `f`, over all dofs, and without contact forces (P = 0).
     ///
     /// # Errors
     /// Returns an error if the matrix has no factors.
@@ -493,7 +493,7 @@ impl<'a> Response<'a> {
     }
 }
 
-/// Replaces a list by the given numbers, increasing and each once.
+/// Replaces a list by the given numbers, in increasing order, each once.
 fn replace(list: &mut Vec<usize>, numbers: impl Iterator<Item = usize>) {
     list.clear();
     list.extend(numbers);

@@ -10,9 +10,9 @@ use crate::dynamics::results::{PassReport, Worst};
 use crate::dynamics::step::{Hinges, Parts, PerBody, ROUND_OFF};
 use crate::linear::larger;
 
-/// Factor on the tolerance within which an iterate must be in balance to be the solution, unless its corrections are
-/// down to round-off. A pass whose residual and correction are below the tolerance ends with an iterate that is better
-/// by the rate of the passes.
+/// Factor on the tolerance within which an iterate must be in balance to be the solution, unless its corrections have
+/// fallen to round-off. A pass whose residual and correction are below the tolerance ends with an iterate whose error
+/// is smaller by the rate of the passes.
 const BALANCED: f64 = 0.1;
 /// Round-off of the residual once corrections hardly decrease, in units of eq. (4.10). In a row of K the other entries
 /// together have about as much round-off as the diagonal entry.
@@ -107,7 +107,7 @@ impl<'a> Scales<'a> {
     }
 
     /// Stricter scales: a part of the tolerance, and no allowance for the round-off of residuals. The stricter scales
-    /// apply as long as corrections decrease, since round-off is then not reached.
+    /// apply as long as corrections decrease, since decreasing corrections show that round-off has not been reached.
     pub fn strict(mut self) -> Self {
         self.noise.fill(0.0);
         self.tolerance *= BALANCED;
@@ -201,9 +201,9 @@ impl<'a> Scales<'a> {
     }
 
     /// Whether a pass with the correction dU closes the gaps of its closed pairs by its rows, as far as open pairs may
-    /// overlap. The gaps do not close if pairs contradict each other: the equal-force rule then lets the forces grow in
-    /// balance, and gaps stay. The gaps do not close if supports push a body along another under the same forces: the
-    /// residual is all round-off, but slave nodes come to other segments.
+    /// overlap. The gaps do not close if pairs contradict each other: the equal-force rule then lets these forces grow
+    /// in balance, while the gaps stay open. The gaps do not close if supports push a body along another under the same
+    /// forces: the residual is all round-off, but slave nodes come to other segments.
     pub fn closes_gaps(&self, contact: &ContactForces, du: &[f64]) -> bool {
         contact.acting().all(|(constraint, _)| {
             let most = |part: f64| larger(self.closed_gap(constraint), part * constraint.scale);
@@ -266,7 +266,7 @@ impl<'a> Scales<'a> {
         self.relative(errors.residual[part], self.force[part], self.noise[part])
     }
 
-    /// `value` in units of its scale, or of its round-off over the tolerance if this unit is larger.
+    /// `value` in units of its scale, or of its round-off divided by the tolerance, whichever unit is larger.
     fn relative(&self, value: f64, scale: f64, floor: f64) -> f64 {
         let scale = larger(scale, floor / self.tolerance);
         if scale == 0.0 { value } else { value / scale }

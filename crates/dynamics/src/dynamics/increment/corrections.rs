@@ -5,7 +5,7 @@ use crate::dynamics::results::Cause;
 /// Correction of a pass, relative to the increment, above which the iterate of the pass is not a solution even if its
 /// forces are in balance.
 const NEAR: f64 = 1e-4;
-/// Ratio of successive corrections above which they hardly decrease.
+/// Ratio of successive corrections above which the corrections hardly decrease.
 const STAGNANT: f64 = 0.5;
 /// Number of passes after which slave nodes keep their targets; in earlier passes corrections may go to and fro with
 /// the targets.

@@ -30,7 +30,7 @@ pub(crate) struct EqualForces {
 }
 
 impl EqualForces {
-    /// The state before the first pass; the passes have the `tolerance`.
+    /// The state before the first pass of passes with the given `tolerance`.
     pub fn new(tolerance: f64) -> Self {
         EqualForces {
             tolerance,
@@ -41,7 +41,7 @@ impl EqualForces {
         }
     }
 
-    /// The weight of the next pass, if the passes have `settled`.
+    /// The weight of the next pass, if the search for the closed pairs is over (`settled`).
     pub fn weight(&self, settled: bool) -> Option<f64> {
         settled.then_some(self.weight)
     }
@@ -51,8 +51,8 @@ impl EqualForces {
         self.has_decreased
     }
 
-    /// Enters the relative correction of a pass; the pass used the weight if the passes have
-    /// `settled`.
+    /// Enters the relative correction of a pass; the pass used the weight if the search for the closed pairs is over
+    /// (`settled`).
     pub fn take_in(&mut self, correction: f64, settled: bool) {
         if !settled {
             return;

@@ -1,8 +1,8 @@
 //! Velocity jump at the start of an increment; the set of pairs with impact impulses is iterated
 //! along with the passes. See docs/theory/impacts.md, Impact impulses (paper eq. 30).
 //!
-//! Criterion for keeping impulses: the rows of the iterate are near enough to the rows with which they were computed.
-//! See docs/numerics.md, Kept impulses.
+//! Criterion for keeping impulses: the rows of the iterate are near enough to the rows with which the impulses were
+//! computed. See docs/numerics.md, Kept impulses.
 
 use std::borrow::Cow;
 
@@ -27,7 +27,7 @@ const SET_CHANGES: usize = 5;
 pub(crate) struct Impulses {
     /// Keys of the pairs closed at the end of the last pass, increasing.
     closed: Vec<ConstraintKey>,
-    /// Keys of the pairs that touch at the start and have impulses in any case, increasing.
+    /// Keys of the pairs that touch at the start and always have impulses, increasing.
     touching: Vec<ConstraintKey>,
     changes: usize,
     at_rest: bool,
@@ -35,7 +35,8 @@ pub(crate) struct Impulses {
     forces: ContactForces,
     /// Constraints with impulses in the iterate.
     of_iterate: Vec<Constraint>,
-    /// Keys of the pairs whose impulse may use the impulse of their force (standing impulse), eq. (11.7), increasing.
+    /// Keys of the pairs whose impulse may cancel a part of the impulse of their force (standing impulse), eq. (11.7),
+    /// increasing.
     lent: Vec<ConstraintKey>,
     /// The velocity that impulses start from in place of V0, eq. (11.5) and eq. (11.11); `None` if impulses start from
     /// V0.
@@ -276,7 +277,7 @@ impl Impulses {
 
     /// Enters the pairs in contact after a pass. Returns whether the pairs are the same as before, the pairs with a
     /// standing impulse still do not slip, and the impulses belong to these pairs. After some changes the set of pairs
-    /// is kept: impulses on any set remove energy and never add any.
+    /// is kept: impulses on any set of pairs remove energy and never add energy.
     pub fn rest(&mut self, problem: &StepProblem, contact: &ContactForces) -> bool {
         self.sticking = match problem.unknowns.turning.are_driven() {
             true => Vec::new(),
@@ -492,8 +493,8 @@ impl Steady<'_> {
 }
 
 /// Change of the velocity after the impulses of a constraint if its rows change from `before` to `now`. The change is
-/// the sum of three changes: of the approach and of the slip rate, as far as the impulses of the state stop these, and
-/// of the direction of the velocity jump.
+/// the sum of three changes: of the approach and of the slip rate, as far as the impulses stop the approach and the
+/// slip rate, and of the direction of the velocity jump.
 fn change(
     before: &Constraint,
     now: &Constraint,

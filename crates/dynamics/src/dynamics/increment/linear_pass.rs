@@ -13,7 +13,7 @@ const NO_CHANGE: f64 = 1e-13;
 const MOST_LEFT: f64 = 1e-3;
 /// Largest number of changes of the force N dU in a pass.
 const MOST_CHANGES: usize = 3;
-/// Ratio below which successive changes of the force N dU must stay, unless they are round-off.
+/// Ratio below which successive changes of the force N dU must stay, unless these changes are round-off.
 const FALLS: f64 = 0.5;
 
 /// Vectors of the passes of an increment.
@@ -27,7 +27,7 @@ pub(super) struct Vectors {
     pub d_p: Vec<f64>,
     /// Force theta2 K d_p of the prescribed motion.
     pub support_force: Vec<f64>,
-    /// Load r - theta2 K d_p.
+    /// Load r - theta2 K d_p of the pass.
     pub load: Vec<f64>,
     /// Prescribed motion d_p plus the motion that closes the gaps of the hinges.
     pub closing: Vec<f64>,
@@ -65,7 +65,7 @@ impl SkewPart {
         }
     }
 
-    /// Adds N dU to a load.
+    /// Adds the force N dU to a load.
     pub fn add_to(&self, load: &mut [f64]) {
         load.iter_mut().zip(&self.force).for_each(|(r, f)| *r += f);
     }
@@ -82,8 +82,8 @@ impl SkewPart {
         force
     }
 
-    /// Enters the dU of another solve. Returns whether the force N dU has converged, relative to the other forces, or
-    /// cannot converge further because of round-off.
+    /// Enters the correction dU of another solve. Returns whether the force N dU has converged, relative to the other
+    /// forces, or cannot converge further because of round-off.
     pub fn take_in(&mut self, du: &[f64], others: f64) -> bool {
         let force = self.product(du);
         self.force.resize(du.len(), 0.0);
@@ -99,7 +99,7 @@ impl SkewPart {
     }
 }
 
-/// Writes d_p plus the motion that closes the gaps of the hinges; returns the hinge forces of the
+/// Writes the prescribed motion d_p plus the motion that closes the gaps of the hinges; returns the hinge forces of the
 /// closing motion.
 ///
 /// ```text

@@ -147,7 +147,7 @@ struct ContactForce {
 }
 
 impl ContactForce {
-    /// Writes Bn^T Pn + Bt^T Pt of eq. (3.1) over `dofs` dofs, in place of the force before.
+    /// Writes the contact force Bn^T Pn + Bt^T Pt of eq. (3.1) over `dofs` dofs, in place of the force before.
     fn write(&mut self, contact: &ContactForces, dofs: usize) {
         let Self { values, dofs: own } = self;
         own.drain(..).for_each(|dof| values[dof] = 0.0);
@@ -162,9 +162,9 @@ impl ContactForce {
 /// Progress of the passes of an increment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PassStage {
-    /// Whether the search for the closed pairs is over, so open pairs may overlap by `SETTLED_OVERLAP`.
+    /// Whether the search for the closed pairs is over; open pairs may then overlap by `SETTLED_OVERLAP`.
     pub settled: bool,
-    /// Whether corrections hardly decrease, so residuals may have all their round-off.
+    /// Whether corrections hardly decrease; residuals may then have all their round-off.
     pub stagnates: bool,
 }
 
@@ -203,7 +203,7 @@ impl<'a> Iterate<'a> {
     }
 
     /// The relative residual if the iterate is the solution, that is, if residual, gaps and slips are below the
-    /// tolerance or round-off; else `None`.
+    /// tolerance or round-off; otherwise `None`.
     pub fn residual(
         &self,
         problem: &StepProblem,

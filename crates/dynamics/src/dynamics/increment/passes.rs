@@ -102,7 +102,7 @@ impl Passes<'_, '_> {
     }
 
     /// Writes the part d_p of the prescribed motion that the predictor leaves, the force theta2 K d_p, and the load r -
-    /// theta2 K d_p. The first pass makes the motion d_p; in later passes d_p is zero.
+    /// theta2 K d_p. The first pass performs the motion d_p; in later passes d_p is zero.
     pub fn supports(&mut self, pass: usize, vectors: &mut Vectors) {
         self.move_supports(pass, vectors);
         let Vectors {

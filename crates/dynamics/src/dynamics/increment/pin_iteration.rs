@@ -1,6 +1,6 @@
 //! A pass of a static increment with bodies that no support holds: contact forces, correction and rigid motions of the
-//! bodies. A motion that only facets resist is held; a motion that nothing resists has no equilibrium. See
-//! docs/theory/bodies.md, Pins.
+//! bodies. A motion that only the facets of the mesh resist is held; for a motion that nothing resists there is no
+//! equilibrium. See docs/theory/bodies.md, Pins.
 
 use super::contact_forces::ContactForces;
 use super::linear_pass::{Vectors, close_hinges};
@@ -31,7 +31,7 @@ struct Unbalance {
 pub(super) struct PinState {
     /// Number of last passes, in a row, in which a body that touches nothing was not in balance.
     free_passes: usize,
-    /// The unbalance before motions were held.
+    /// The forces that were not balanced before motions were held.
     before: Option<Unbalance>,
     /// Motions that are held.
     pub held: HeldMotions,
@@ -57,7 +57,7 @@ pub(super) struct PinIteration<'a, 'm> {
 
 impl PinIteration<'_, '_> {
     /// Solves a pass: contact forces, correction and rigid motions. A motion that a force drives is held if only the
-    /// facets of the mesh resist the motion. If nothing resists the motion, there is no equilibrium.
+    /// facets of the mesh resist the motion. If nothing resists a motion that a force drives, there is no equilibrium.
     ///
     /// Returns the forces by which hinges close their gaps.
     pub fn iterate(
@@ -143,7 +143,7 @@ impl PinIteration<'_, '_> {
         }
     }
 
-    /// Whether a body has tipped over or is about to.
+    /// Whether a body has tipped over or is about to tip over.
     fn tips(&self) -> bool {
         let free = self.workspace.stiffness.k.free();
         free.is_some_and(|free| free.stability() != Stability::Stable)
@@ -230,7 +230,7 @@ impl PinIteration<'_, '_> {
     }
 
     /// Holds the free motions of bodies with forces at their pins; returns whether there are any such motions. The free
-    /// motions are found in a configuration in which the bodies have not moved away.
+    /// motions are found in a configuration in which the bodies have not moved away from their contacts.
     fn hold(
         &mut self,
         contact: &mut ContactForces,

@@ -13,7 +13,7 @@ const COST: f64 = 1.0;
 /// Rule for the factors of K* that an attempt uses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum FactorRule {
-    /// The available factors are used as long as they pay.
+    /// The available factors are used as long as this saves time.
     Kept,
     /// New factors are made for every pass.
     EveryPass,
@@ -92,8 +92,9 @@ impl Refactorization {
 
     /// Enters the relative correction of a pass. A growing correction is not divergence if `may_grow` is true.
     ///
-    /// At the rate theta, n(theta) = ln(correction/tolerance)/-ln(theta) passes are left. The factors are worn if
-    /// n(theta) is more than the passes with fresh factors plus the cost of the factorisation.
+    /// At the rate theta of the corrections, n(theta) = ln(correction/tolerance)/-ln(theta) further passes are needed.
+    /// The factors are worn if n(theta) is larger than the number of passes with fresh factors plus the cost of the
+    /// factorisation.
     pub fn take_in(&mut self, correction: f64, may_grow: bool) -> Result<(), Cause> {
         self.corrections.take_in(correction, may_grow)?;
         self.age += 1;

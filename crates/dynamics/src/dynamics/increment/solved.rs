@@ -37,11 +37,11 @@ pub(crate) struct Solved {
     pub held: HeldMotions,
     /// Whether closed pairs stiffened K*.
     pub pairs_stiffen: bool,
-    /// Rates that a static increment has measured with its factors.
+    /// Rates of the corrections that a static increment has measured with its factors.
     pub rates: StaticRates,
     /// Whether the last factors of a static increment show if the equilibrium at its end is stable.
     pub tells_stability: bool,
-    /// Whether a body has tipped over, which the next increment cannot extrapolate.
+    /// Whether a body has tipped over, so that the next increment must not extrapolate the motion.
     pub has_tipped: bool,
 }
 
@@ -58,7 +58,7 @@ pub(crate) struct Path {
     pub held: HeldMotions,
     /// Whether closed pairs stiffened K*.
     pub pairs_stiffen: bool,
-    /// Rates that static increments have measured with their factors.
+    /// Rates of the corrections that static increments have measured with their factors.
     pub rates: StaticRates,
 }
 

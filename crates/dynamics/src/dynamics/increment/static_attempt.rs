@@ -81,7 +81,8 @@ impl<'m> StaticAttempt<'_, 'm> {
         Err(trace.failed(failed, settings.tolerance))
     }
 
-    /// Attempts in their order: whether closed pairs stiffen K*, and the rule for the factors of the passes.
+    /// Attempts in their order; each states whether closed pairs stiffen K*, and the rule for the factors of the
+    /// passes.
     fn orders(&self) -> &'static [(bool, FactorRule)] {
         use FactorRule::{EveryPass, Kept};
         let may_keep = self.passes.problem.settings.factorization == Factorization::Keep;
@@ -100,7 +101,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// Solves with passes in which closed pairs stiffen K* or not, and factors may be kept.
+    /// Solves the increment with the given choice of whether closed pairs stiffen K* and whether factors are kept.
     fn solve_with(
         &mut self,
         pairs_stiffen: bool,
@@ -227,7 +228,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// Whether the available factors belong to a K* of the kind that the next pass needs.
+    /// Whether the available factors belong to the kind of K* that the next pass needs.
     fn fits(&self, pairs_stiffen: bool) -> bool {
         let stiffness = &self.passes.workspace.stiffness;
         let is_tangent = stiffness.form == StiffnessForm::Tangent && !pairs_stiffen;

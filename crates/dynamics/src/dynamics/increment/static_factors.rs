@@ -6,20 +6,20 @@ use serde::{Deserialize, Serialize};
 use super::refactorization::FactorRule;
 use crate::dynamics::results::Cause;
 
-/// Rate of the corrections from which on kept factors never pay.
+/// Rate of the corrections from which on kept factors never save time.
 const POOR: f64 = 0.3;
 /// Expected rate of the corrections with kept factors, until the rate is measured.
 const EXPECTED: f64 = 0.03;
 /// Rate of the first pass with new factors up to which kept factors are tried again.
 const SMOOTH: f64 = 0.01;
-/// Least rate that new factors are expected to have.
+/// Least expected rate of the corrections with new factors.
 const LEAST: f64 = 1e-4;
 /// Cost of a factorisation, in passes.
 const COST: f64 = 2.0;
 /// Error of an iterate, relative to the increment, up to which the factors at this iterate show if the equilibrium is
 /// stable.
 const NEAR: f64 = 1e-3;
-/// Rates that the increments of a static step have measured.
+/// Rates of the corrections that the increments of a static step have measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StaticRates {
     /// Rate of the corrections, within an increment, with the factors with which the increment began.
@@ -123,7 +123,7 @@ impl StaticFactors {
     ///
     /// # Errors
     /// Returns an error if the first pass used earlier factors and hardly decreased the correction,
-    /// so it has led away from the solution.
+    /// so the pass has led away from the solution.
     pub fn take_in(&mut self, correction: f64) -> Result<(), Cause> {
         self.age += 1;
         let of_last = self.are_own[0];
@@ -178,7 +178,7 @@ impl StaticFactors {
         self.made_at <= NEAR
     }
 
-    /// Rates that the attempt has measured.
+    /// Rates of the corrections that the attempt has measured.
     pub fn rates(&self) -> StaticRates {
         self.rates
     }

@@ -13,8 +13,8 @@ use crate::model::Settings;
 
 /// Number of corrections at the end of an attempt over which their mean rate is computed.
 const LAST: usize = 4;
-/// Growth from which on passes count as diverged: of the corrections from their smallest to the last, or of the forces
-/// to be balanced from the first to the last.
+/// Growth from which on passes count as diverged: growth of the corrections from the smallest to the last, or of the
+/// forces to be balanced from the first pass to the last.
 const GROWTH: f64 = 10.0;
 /// Number of passes for which memory is reserved at the start.
 const ROOM: usize = 100;
@@ -149,7 +149,7 @@ fn growth(corrections: &[f64]) -> Option<usize> {
     (last > GROWTH * least).then_some(smallest + 1)
 }
 
-/// Course of the last corrections, with n = ln(correction/tolerance)/-ln(rate) passes left.
+/// Course of the last corrections, with n = ln(correction/tolerance)/-ln(rate) further passes needed.
 fn end_of(corrections: &[f64], tolerance: f64) -> Option<Course> {
     let ends = &corrections[corrections.len().saturating_sub(LAST)..];
     let (&first, &last) = (ends.first()?, ends.last()?);
@@ -170,7 +170,7 @@ fn end_of(corrections: &[f64], tolerance: f64) -> Option<Course> {
 
 /// Number of last passes within which a slave node must have left a state and come back to it.
 const PASSES: usize = 6;
-/// Number of the very last passes within which the state of a slave node must have changed.
+/// Number of last passes within which the state of a slave node must have changed.
 const RECENT: usize = 3;
 
 /// A closed pair after a pass.

@@ -162,7 +162,7 @@ impl BodyMasses {
     }
 }
 
-/// Length by which the rotation dof of a turning body is divided to give the body's angle.
+/// Length by which the rotation dof of a turning body must be divided to give the body's angle.
 fn own_length(problem: &StepProblem, spin: usize) -> f64 {
     let mut bodies = problem.unknowns.turning.bodies.iter();
     bodies

@@ -218,8 +218,8 @@ impl ContactLedger {
     }
 }
 
-/// The result is 1 if the slave surface of a constraint is the side whose forces are reported, -1 if it is the other
-/// side, and 0 within one body.
+/// The sign 1 if the slave surface of a constraint is the side whose forces are reported, -1 if it is the other side,
+/// and 0 within one body.
 fn side_of_slave(model: &Model, bodies: &Bodies, constraint: &Constraint) -> f64 {
     let on_side = forces_on_side(model, bodies, constraint, [1.0, 0.0]);
     let slave = constraint.forces_on_slave_surface([1.0, 0.0]).next();

@@ -45,11 +45,11 @@ pub(crate) struct Ledger {
     start: f64,
     /// Work of the loads and work of the supports in static steps.
     sources: [f64; 2],
-    /// Largest K_ii of an element or spring in every part at the start (force/length).
+    /// Largest diagonal entry K_ii of an element or spring in every part at the start (force/length).
     stiffness: Vec<f64>,
 }
 
-/// Largest K_ii of an element or spring in every part of the model.
+/// Largest diagonal entry K_ii of an element or spring in every part of the model.
 fn stiffness_of_elements(problem: &StepProblem, start: &State) -> Vec<f64> {
     let StepProblem {
         elements, parts, ..
@@ -188,8 +188,8 @@ impl Ledger {
         Ok(self)
     }
 
-    /// Enters the impulses at the start of an increment: the energy that they remove, and the work of supports, which
-    /// keep their velocity.
+    /// Enters the impulses at the start of an increment: the energy that the impulses remove, and the work of supports,
+    /// which keep their velocity.
     fn enter_impulses(&mut self, problem: &StepProblem, start: &State, solved: &Solved) {
         if solved.v0p == start.v {
             return;
@@ -375,7 +375,7 @@ impl Ledger {
     }
 
     /// Completes an increment that ends in the state `end`: computes the balance and the largest energy. Returns the
-    /// work of the normal contact forces since `contact_work0` if it is positive beyond round-off.
+    /// work that the normal contact forces have done since `contact_work0`, if this work is positive beyond round-off.
     ///
     /// # Errors
     /// Returns an error if an energy is not finite.

@@ -49,8 +49,8 @@ pub(crate) fn check_energy_gain(
 /// ```
 ///
 /// Here E is the largest energy so far; the symbols n, K_ii and M_ii have the meaning of eq. (4.10). In a static step
-/// no balance is demanded if the forces n have done more work than a thousandth of E, since the bodies then move
-/// rigidly.
+/// no balance is demanded if the work of the forces n exceeds a thousandth of E, since the bodies then move almost as
+/// rigid bodies.
 ///
 /// # Errors
 /// [`Cause::Unbalanced`].

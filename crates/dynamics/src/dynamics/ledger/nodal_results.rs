@@ -126,8 +126,8 @@ impl MasterMeans {
     }
 }
 
-/// Mean coefficient of friction, weighted by Pn: the first coefficient, the sum of Pn, and the sum of Pn times the
-/// difference from the first coefficient.
+/// Mean coefficient of friction, weighted by Pn, from three numbers: the first coefficient, the sum of Pn, and the sum
+/// of Pn times the difference from the first coefficient.
 #[derive(Clone, Copy, Default)]
 struct MeanCoefficient {
     first: f64,

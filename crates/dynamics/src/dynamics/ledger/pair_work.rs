@@ -137,7 +137,7 @@ impl EndForces {
     }
 
     /// Forces of supports (dof, force), including forces that equations and turning bodies hand on to supports. The
-    /// forces hold at displacements `u`: the end of an increment `d`, or its start.
+    /// forces belong to the displacements `u`, at the end of an increment `d` or at its start.
     pub fn of_supports(&self, problem: &StepProblem, [u, d]: [&[f64]; 2]) -> Vec<(usize, f64)> {
         let unknowns = &problem.unknowns;
         let mut missing = unknowns.passed_on(&self.missing(d.len())).into_owned();
@@ -196,9 +196,9 @@ impl EndForces {
     /// -(1 + Pn*/Pn1)/2 Pt1.(Bt1 d),   max(0, -Pt0.(Bt0 d)/2) where Pn1 = 0              eq. (12.8)
     /// ```
     ///
-    /// Pn* = Pn0 + tau (Pn1 - Pn0) is the normal force at which the pair begins to slide, with tau = (1 -+ Pt0/(mu
+    /// Here Pn* = Pn0 + tau (Pn1 - Pn0) is the normal force at which the pair begins to slide, with tau = (1 -+ Pt0/(mu
     /// Pn0))/2. While the pair slides, |Pt| = mu Pn changes linearly, so the pair slides with the mean of its forces. A
-    /// pair that opens has only the force of its start.
+    /// pair that opens has a force only at the start.
     pub fn works(&self, solved: &Solved, end: &EndForces) -> (Vec<PairWork>, f64) {
         let d = &solved.d;
         let (before, after) = (self.of_slaves(), end.of_slaves());

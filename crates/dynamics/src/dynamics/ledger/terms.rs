@@ -1,5 +1,5 @@
-//! Terms of the energy ledger: one function for each, with its equation. See docs/theory/impacts.md, Ledger; for static
-//! increments docs/theory/bodies.md, Static steps.
+//! Terms of the energy ledger: one function for each term, with its equation. See docs/theory/impacts.md, Ledger; for
+//! static increments docs/theory/bodies.md, Static steps.
 
 use std::borrow::Cow;
 
@@ -87,7 +87,7 @@ impl<'f> HandedOver<'f> {
 }
 
 /// Work of the loads in an increment `d` (energy). The forces lambda of hinges are part of the load R but do no work,
-/// so they are excluded:
+/// so these forces are excluded:
 ///
 /// ```text
 /// d.R - lambda.(C d)      eq. (9.1)
@@ -98,8 +98,8 @@ pub(super) fn load_work(d: &[f64], load: &[f64], hinges: &[f64], gaps: &[f64]) -
     dot(d, load) - dot(hinges, gaps)
 }
 
-/// Work of the impulses J = Bn^T Phi + Bt^T Psi (force time) on the velocity V0 from which they start and which they
-/// change by dV (energy):
+/// Work of the impulses J = Bn^T Phi + Bt^T Psi (force time) on the velocity V0 from which the impulses start, and on
+/// its change dV (energy):
 ///
 /// ```text
 /// J.(V0 + V0+)/2 = J.V0 + J.dV/2      eq. (9.4)
@@ -179,8 +179,8 @@ pub(super) fn static_support_work(travel: &[f64], reactions: [&[(usize, f64)]; 2
     all.fold(0.0, |sum, &(p, reaction)| sum + travel[p] * reaction / 2.0)
 }
 
-/// Work along a path of the forces that are missing from equilibrium (force), less the work of the supports (energy):
-/// the part that rigid bodies absorb because their nodes move on chords.
+/// Work along a path of the out-of-balance forces (force), less the work of the supports (energy): the part that rigid
+/// bodies absorb because their nodes move on chords.
 pub(super) fn work_within(travel: &[f64], missing: &[f64], reactions: &[(usize, f64)]) -> f64 {
     let of_supports = |left: f64, &(p, reaction): &(usize, f64)| left - travel[p] * reaction;
     reactions.iter().fold(dot(travel, missing), of_supports)

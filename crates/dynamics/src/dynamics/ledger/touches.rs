@@ -46,7 +46,7 @@ struct TouchUnderWay {
 }
 
 impl Touches {
-    /// The touches at the start of a run: none.
+    /// The list of touches at the start of a run, which is empty.
     pub fn new(mesh: &Mesh) -> Self {
         Touches {
             corners: corners(mesh),
@@ -216,7 +216,7 @@ impl TouchUnderWay {
         }
     }
 
-    /// The touch as it ends at a time; `mass` is the reduced mass of its bodies.
+    /// The result of a touch that ends at a time; `mass` is the reduced mass of its bodies.
     fn end(self, time: f64, mass: f64) -> Touch {
         let [x, y] = self.impulse;
         let impulse = x.hypot(y);

@@ -53,7 +53,7 @@ pub struct ContactResultant {
     pub normal: f64,
     /// Sum of the tangential forces Pt (force).
     pub tangential: f64,
-    /// Number of pairs with Pn > 0.
+    /// Number of closed pairs (Pn > 0).
     pub closed: usize,
     /// Number of closed pairs that do not slip.
     pub sticking: usize,
@@ -61,8 +61,8 @@ pub struct ContactResultant {
     pub min_gap: f64,
     /// Mean coefficient of friction of the closed pairs, weighted by Pn; NaN without closed pairs.
     pub friction_coefficient: f64,
-    /// Largest max(|Pt| - mu Pn, 0), or ||Pt| - mu Pn| for a pair that slips, divided by the largest Pn. Without
-    /// contact the error of friction is 0; mu is the coefficient of the law.
+    /// Largest error of the friction: max(|Pt| - mu Pn, 0), or ||Pt| - mu Pn| for a pair that slips, divided by the
+    /// largest Pn. Without contact the error of friction is 0; mu is the coefficient of the law.
     pub cone_violation: f64,
     /// Distance of the pairs' total impulses from the cone in the increment, with impacts and returns; for a pair whose
     /// total normal impulse pulls, the distance is this pull.
@@ -133,7 +133,7 @@ pub struct ReturnedImpulse {
     pub tangential: f64,
     /// Normal impulse of the return (force time).
     pub returned_normal: f64,
-    /// Tangential impulse that comes with `returned_normal` (force time).
+    /// Tangential impulse of the return (force time).
     pub returned_tangential: f64,
 }
 

@@ -67,7 +67,7 @@ impl Hinges {
         self.rows.iter().map(gap).collect()
     }
 
-    /// Adds C^T lambda to a force over all dofs.
+    /// Adds the hinge forces C^T lambda to a force over all dofs.
     pub fn add_forces(&self, lambda: &[f64], force: &mut [f64]) {
         let rows = self.rows.iter().zip(lambda);
         for (Row { dofs: [a, b], .. }, lambda) in rows.filter(|(row, _)| !row.is_held) {

@@ -643,7 +643,7 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.solve, || solver.begin(write))
     }
 
-    /// Writes A^-1 b for the present right-hand side b, at some unknowns, to `values`.
+    /// Writes the solution A^-1 b for the present right-hand side b, at some unknowns, to `values`.
     pub fn partial(&mut self, unknowns: &[usize], values: &mut Vec<f64>) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.partial(unknowns, values));
