@@ -39,8 +39,8 @@ impl ClosedPair {
         }
     }
 
-    /// Tangential force beyond the friction limit of a coefficient mu, or, where the pair slips, its difference from
-    /// the limit (force), eq. (3.6).
+    /// Tangential force beyond the friction limit of a coefficient mu (force), eq. (3.6). Where the pair slips, the
+    /// result is the distance of the tangential force from the limit, whichever of the two is larger.
     ///
     /// ```text
     /// |Pt| - mu Pn,   of a pair that slips ||Pt| - mu Pn|

@@ -219,7 +219,7 @@ impl NodePath<'_> {
             || (self.are_near(i, j) && (depth <= CORNER_CLIP_DEPTH * p.length || slides()))
     }
 
-    /// Whether a node that enters through a segment and never leaves through one is outside the body nevertheless.
+    /// Whether a node that enters through a segment, and leaves through no segment, is outside the body nevertheless.
     fn may_stay(&self, i: usize, xi: f64) -> bool {
         let p = self.project(i, 1.0);
         if self.is_round_off(i, -p.gap, p.length)

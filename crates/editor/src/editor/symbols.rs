@@ -1,4 +1,4 @@
-//! Names of a deck: where each is defined and used. Names are resolved as in the reader: in a part, a name means an
+//! Names of a deck: where each name is defined and used. Names are resolved as in the reader: in a part, a name means an
 //! object of the part, or else of the whole deck; outside a part, the name of the instance stands before the name.
 
 use super::cards::{Card, Cards, Instance, Scope, fields_of, is_first_row, key, spot};

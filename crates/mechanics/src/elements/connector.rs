@@ -261,8 +261,8 @@ impl PlacedConnector {
         }
     }
 
-    /// Symmetric part of the tangent of [`Self::force`], or the positive part of this matrix, eq. (2.21); in the
-    /// energy-momentum form twice the tangent, as for elements.
+    /// Symmetric part of the tangent of [`Self::force`], or the positive part of this matrix, eq. (2.21). In the
+    /// energy-momentum form the result is twice the tangent, as for elements.
     pub(super) fn tangent(&self, motion: Motion, part: TangentPart) -> ConnectorMatrix {
         let curve = &self.connector.curve;
         if self.is_dashpot() {

@@ -22,7 +22,7 @@ const LEFT_OVER: f64 = 1e-6;
 const REJECTIONS: u32 = 2;
 /// Least factor on the length of an increment after a rejection.
 const LEAST_PART: f64 = 0.3;
-/// Safety factors on the length whose truncation error would equal the tolerance: after a rejection, and in growth.
+/// Safety factors on the length whose truncation error would equal the tolerance: after a rejection, and for growth.
 const SAFE: f64 = 0.85;
 const SAFE_GROWTH: f64 = 0.9;
 /// Least growth for which new factors of K* are worth their cost.

@@ -13,7 +13,7 @@ const SOLVED_SLIP: f64 = 1e-9;
 /// Slip rate at the start of an increment, relative to the largest speed at the pair, up to which the pair is at rest.
 const RESTING: f64 = 1e-9;
 
-/// Data on which the coefficients of an iterate depend, other than its constraints.
+/// Data, besides the constraints, on which the coefficients of an iterate depend.
 #[derive(Clone, Copy)]
 pub(crate) struct BeforeIterate<'a> {
     /// Displacements U0 of the start.

@@ -13,7 +13,7 @@ use crate::model::{Equation, Model};
 ///
 /// A body consists of all that elements and equations connect. Nodes of a body are in one part if the elements around
 /// these nodes, and around the nodes of their equations, have the same sections. A light part next to a stiff or heavy
-/// one is therefore solved to its own scale, like a light body next to a heavy one.
+/// part is therefore solved to its own scale, like a light body next to a heavy body.
 pub(crate) struct Parts {
     /// Body of every node.
     body: Vec<usize>,

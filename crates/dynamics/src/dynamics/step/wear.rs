@@ -13,8 +13,7 @@ const COST: f64 = 10.0;
 const GAIN: f64 = 0.1;
 /// Weight of the last number of passes in the running mean.
 const LATEST: f64 = 0.2;
-/// Factor by which the number of excess passes that pays for the next factorisation grows after a factorisation that
-/// has not paid.
+/// Factor by which [`Wear::bound`] grows after factors on trial that have not paid.
 const RARER: f64 = 4.0;
 /// Largest multiple of the cost of a factorisation that excess passes must reach.
 const MOST: f64 = 256.0;
