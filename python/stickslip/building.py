@@ -55,7 +55,7 @@ class Building(ABC):
 
     @abstractmethod
     def find(self, keyword: str) -> list[Card]:
-        """All cards with this keyword."""
+        """All cards with a given keyword."""
 
     # Meshes and sections.
 
@@ -63,9 +63,9 @@ class Building(ABC):
         """Appends the mesh: nodes, elements, sets, and its sides as surfaces.
 
         In bodies of revolution x is the radius and y goes along the axis. `formulation` is a word of FORMULATIONS;
-        elements of a shape without such a type, for example triangles, get the type without it. The nodes of an element
-        set become a node set of the same name. Returns the number of its first node; the node with index i of the mesh
-        has this number plus i. A second mesh continues the numbers of the first one.
+        elements of a shape without such a type, for example triangles, get their type without a formulation. The nodes
+        of an element set become a node set of the same name. Returns the number of its first node; the node with index
+        i of the mesh has this number plus i. A second mesh continues the numbers of the first mesh.
         """
         ends = element_types(plane, formulation)
         node, element = self._next_number("NODE"), self._next_number("ELEMENT")
@@ -115,8 +115,8 @@ class Building(ABC):
         return self.extend(material(name, young, poisson, density, "", **damping))
 
     def hencky(self, name: str, young: float, poisson: float, density: float, **damping: float) -> Self:
-        """Appends Hencky's material, for large strains: Kirchhoff stress proportional to logarithmic strain; damping
-        `alpha`, `beta`."""
+        """Appends Hencky's material, for large strains: Kirchhoff stress proportional to logarithmic strain; the
+        damping has the factors `alpha` and `beta`."""
         return self.extend(material(name, young, poisson, density, "HENCKY", **damping))
 
     def plastic(
@@ -129,8 +129,8 @@ class Building(ABC):
         kinematic: bool = False,
         **damping: float,
     ) -> Self:
-        """Appends a metal with pairs of yield stress and plastic strain, the first at strain 0; with `kinematic`
-        hardening there are two pairs."""
+        """Appends a metal with pairs of yield stress and plastic strain, the first pair at plastic strain 0; with
+        `kinematic` hardening there are two pairs."""
         if not yield_stresses or yield_stresses[0][1] != 0.0:
             raise Fault(f"{name}: the first yield stress is that of the plastic strain 0")
         head = "PLASTIC, HARDENING=KINEMATIC" if kinematic else "PLASTIC"
@@ -178,7 +178,7 @@ class Building(ABC):
         return self.add(f"CONTACT PAIR, INTERACTION={self._interaction(friction)}{kind}", (slave, master))
 
     def general_contact(self, friction: Number = 0.0, discretisation: Discretisation = "") -> Self:
-        """Appends general contact: every exterior face against every other."""
+        """Appends general contact: every exterior face may touch every other exterior face."""
         name = self._interaction(friction)
         self.add("CONTACT").add("CONTACT INCLUSIONS, ALL EXTERIOR")
         if discretisation:
@@ -186,7 +186,7 @@ class Building(ABC):
         return self.add("CONTACT PROPERTY ASSIGNMENT", ("", "", name))
 
     def tie(self, slave: str, master: str) -> Self:
-        """Appends a tie, which joins two surfaces as if they were parts of one body."""
+        """Appends a tie, which joins two surfaces as if these were parts of one body."""
         return self.add(f"TIE, NAME=TIE{len(self.find('TIE')) + 1}", (slave, master))
 
     def _interaction(self, friction: Number) -> str:
@@ -217,17 +217,17 @@ class Building(ABC):
         return self._connect("MASS", "MASS", (node,), mass)
 
     def hinge(self, first: int, second: int) -> Self:
-        """Appends a hinge between two nodes at one place, of two rigid bodies or of nodes that ride on reference
+        """Appends a hinge between two nodes at one place, of two rigid bodies or of nodes that move with reference
         nodes."""
         if first == second:
             raise Fault(f"a hinge has two nodes, not node {first} twice")
         return self.add("MPC", ("PIN", first, second))
 
     def coupling(self, name: str, surface: str, reference: str, distributing: bool = False) -> Self:
-        """Couples the nodes of a surface to a reference node (see `node`): they ride on it as a rigid body, which turns
-        and can carry moments.
+        """Couples the nodes of a surface to a reference node (see `node`): they move with the reference node as a rigid
+        body, which turns and can carry moments.
 
-        With `distributing`, the displacement of the reference node is the mean of those of the surface nodes, and
+        With `distributing`, the displacement of the reference node is the mean displacement of the surface nodes, and
         forces on the reference node are distributed to these nodes in equal parts.
         """
         head = f"COUPLING, CONSTRAINT NAME={name}, REF NODE={reference}, SURFACE={surface}"
@@ -236,9 +236,9 @@ class Building(ABC):
     def pre_tension(self, surface: str, node: str, normal: tuple[float, float] | None = None) -> Self:
         """Cuts a body, such as a bolt, along faces between its elements, for its preload.
 
-        In steps, direction 1 of the node (see `node`) is the overlap of the two sides: `load` gives the force of the
-        bolt (tension is positive), and `support` prescribes the overlap. `normal` is the normal of the section; the
-        default is the mean normal of the faces.
+        In steps, direction 1 of the node (see `node`) is the overlap of the two sides of the cut. There `load` gives
+        the force of the bolt (tension is positive), and `support` prescribes the overlap. `normal` is the normal of the
+        section; the default is the mean normal of the faces.
         """
         if normal == (0.0, 0.0):
             raise Fault(f"{surface}: the normal of the section has no length")
@@ -246,10 +246,11 @@ class Building(ABC):
         return self.add(f"PRE-TENSION SECTION, NODE={node}, SURFACE={surface}", *rows)
 
     def equation(self, *terms: tuple[int | str, int, float]) -> Self:
-        """Appends a linear equation a1 u1 + a2 u2 + ... = 0; each term is given by its node or node set, direction and
+        """Appends a linear equation: a sum of terms is zero. Each term is given by its node or node set, direction and
         factor.
 
-        The displacement of the first term follows from the others. Node sets give an equation for every node.
+        The displacement of the first term follows from the displacements of the other terms. Node sets give an equation
+        for every node.
         """
         if len(terms) < 2:
             raise Fault("an equation has two terms or more")
@@ -262,17 +263,17 @@ class Building(ABC):
         return self.add("EQUATION", (len(terms),), *([x for term in line for x in term] for line in lines))
 
     def spring(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
-        """Appends a spring between two nodes, given by their numbers, along the line between them.
+        """Appends a spring between two nodes, given by their numbers, along the line between these nodes.
 
-        `law` is its stiffness, or pairs of force and elongation with increasing elongation; beyond the pairs the force
-        is constant.
+        `law` is the stiffness of the spring, or pairs of force and elongation with increasing elongation; beyond the
+        pairs the force is constant.
         """
         return self._connect("SPRINGA", "SPRING", (first, second), law)
 
     def dashpot(self, first: int, second: int, law: Number | Sequence[tuple[float, float]]) -> Self:
-        """Appends a dashpot between two nodes, given by their numbers, along the line between them.
+        """Appends a dashpot between two nodes, given by their numbers, along the line between these nodes.
 
-        `law` is its coefficient, or pairs of force and rate of elongation with increasing rate.
+        `law` is the coefficient of the dashpot, or pairs of force and rate of elongation with increasing rate.
         """
         return self._connect("DASHPOTA", "DASHPOT", (first, second), law)
 
@@ -298,8 +299,8 @@ class Building(ABC):
 
     @contextmanager
     def step(self, dt: Number, duration: Number, automatic: bool = False, **settings: object) -> Iterator[Self]:
-        """Begins a dynamic step of equal increments, or of automatic ones that follow their truncation error; cards
-        that are added inside the `with` block belong to it.
+        """Begins a dynamic step of equal increments, or of automatic increments that follow their truncation error;
+        cards that are added inside the `with` block belong to the step.
 
         `settings` are parameters of *STICKSLIP: `scheme="SS22"`, `impact_time="EVENT"`.
         """
@@ -310,8 +311,8 @@ class Building(ABC):
     def static_step(
         self, dt: Number = 1.0, duration: Number = 1.0, automatic: bool = True, **settings: object
     ) -> Iterator[Self]:
-        """Begins a static step whose increments follow their number of passes, or one of equal increments; cards that
-        are added inside the `with` block belong to it."""
+        """Begins a static step whose increments follow their number of passes, or a static step of equal increments;
+        cards that are added inside the `with` block belong to the step."""
         with self._step("STATIC", dt, duration, automatic, settings):
             yield self
 
@@ -333,7 +334,8 @@ class Building(ABC):
         return self.add("INITIAL CONDITIONS, TYPE=VELOCITY", (nodes, 1, x), (nodes, 2, y))
 
     def initial_temperature(self, nodes: str, value: Number) -> Self:
-        """Appends the initial temperature of a node set, at which it is free of thermal stress; the default is 0."""
+        """Appends the initial temperature of a node set, at which the nodes are free of thermal stress; the default is
+        0."""
         return self.add("INITIAL CONDITIONS, TYPE=TEMPERATURE", (nodes, value))
 
     def temperature(self, nodes: str, value: Number, amplitude: str = "") -> Self:
@@ -341,8 +343,8 @@ class Building(ABC):
         return self.add(_with_amplitude("TEMPERATURE", amplitude), (nodes, value))
 
     def support(self, nodes: str, *directions: int, value: Number = 0.0, amplitude: str = "") -> Self:
-        """Holds a node set in directions 1 or 2 (the default is both) or 6, the angle of a rigid body; in a step it may
-        also move the set."""
+        """Holds a node set in directions 1 or 2 (the default is both directions) or 6, the angle of a rigid body; in a
+        step the support may also move the set."""
         rows = [(nodes, one, one, value) for one in directions or (1, 2)]
         return self.add(_with_amplitude("BOUNDARY", amplitude), *rows)
 
@@ -356,7 +358,7 @@ class Building(ABC):
         return self.add("DLOAD", (elements, "GRAV", size, x, y))
 
     def pressure(self, surface: str, size: Number, amplitude: str = "") -> Self:
-        """Appends a pressure on a surface, in a step; a positive one presses on the body."""
+        """Appends a pressure on a surface, in a step; a positive pressure presses on the body."""
         return self.add(_with_amplitude("DSLOAD", amplitude), (surface, "P", size))
 
     def history(self, nodes: str) -> Self:
@@ -365,7 +367,8 @@ class Building(ABC):
 
 
 def element_types(plane: Plane, formulation: str = "") -> dict[int, str]:
-    """Types of elements by their number of nodes; a formulation that does not exist in this plane raises a Fault."""
+    """Types of elements by their number of nodes; a formulation that does not exist in the given plane raises a
+    Fault."""
     starts = {"strain": "CPE", "stress": "CPS", "axisymmetric": "CAX"}
     if plane not in starts:
         raise Fault(f"{plane} is no plane: choose from {', '.join(starts)}")

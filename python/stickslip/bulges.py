@@ -43,8 +43,8 @@ class Bulges:
         return Bulges(self.coefficients[rows], self.goes_straight_on)
 
     def of_points(self, pairs: Integers, middles: dict[int, tuple[int, int]]) -> "Bulges":
-        """Bulges for points of faces; on a side with a node between its corners they count from the lines to the vertex
-        x_v of eq. (3.21)."""
+        """Bulges for points of faces; on a side with a node between its corners, bulges are measured from the lines to
+        the vertex x_v of eq. (3.21)."""
         found = self.coefficients.copy()
         for row, (a, b) in enumerate(pairs.tolist()):
             rise = found[row, 1]

@@ -96,7 +96,7 @@ def dotted(path: str) -> str:
 def _variable(
     axes: list[str], data: Array, attributes: Any, coordinates: dict[str, Any]
 ) -> tuple[list[str], Array, dict[str, str]]:
-    """Axes, values and attributes; the last axis of vectors and tensors is labelled with the names of the
+    """Axes, values and attributes of a variable; the last axis of a vector or tensor is labelled with the names of its
     components."""
     if data.ndim > len(axes):
         components = COMPONENTS[data.shape[-1]]

@@ -33,7 +33,7 @@ PLAIN_TEXT = re.compile(r"\s*(?P<name>[A-Za-z]\w*)\s*=\s*(?P<quote>['\"])(?P<tex
 
 
 class Deck(Building, Shown):
-    """The cards of a deck in order; included cards stand in the place of their file."""
+    """The cards of a deck in order; the cards of an included file stand in its place."""
 
     def __init__(self, cards: Iterable[Card] = (), folder: Path | str = ".") -> None:
         self.cards = list(cards)
@@ -53,7 +53,7 @@ class Deck(Building, Shown):
 
     @classmethod
     def parse(cls, text: str, folder: Path | str = ".") -> "Deck":
-        """A deck made from text; files that it names are searched in `folder`."""
+        """A deck made from text; files that the text names are searched in `folder`."""
         return cls._of(_lines(text, Path(folder), Path(folder)), "the deck", folder)
 
     @classmethod
@@ -81,8 +81,8 @@ class Deck(Building, Shown):
         return Path(path)
 
     def filled(self, values: Mapping[str, Value]) -> "tuple[Deck, dict[str, Value]]":
-        """The deck with the contents of files whose names are parameters, and the values of parameters that it still
-        needs.
+        """The deck with the contents of files whose names are parameters, and the values of parameters that these names
+        still need.
 
         A parameter that is not given has the value of `*PARAMETER`, if this value is a plain text.
         """
@@ -104,11 +104,11 @@ class Deck(Building, Shown):
         return {each["name"]: each["text"] for each in found if each}
 
     def find(self, keyword: str) -> list[Card]:
-        """All cards with this keyword."""
+        """All cards with a given keyword."""
         return [card for card in self.cards if card.keyword == fold(keyword)]
 
     def one(self, keyword: str) -> Card:
-        """The card with this keyword, of which there must be one."""
+        """The card with a given keyword; the deck must have exactly one."""
         found = self.find(keyword)
         if len(found) != 1:
             raise ValueError(f"the deck has {len(found)} cards *{keyword}, not one")
@@ -116,12 +116,12 @@ class Deck(Building, Shown):
 
     @property
     def dt(self) -> float:
-        """Increment of the step, of which there must be one."""
+        """Increment of the step; the deck must have exactly one step."""
         return float(self.one("DYNAMIC").rows[0][0])
 
     @property
     def period(self) -> float:
-        """Duration of the step, of which there must be one."""
+        """Duration of the step; the deck must have exactly one step."""
         return float(self.one("DYNAMIC").rows[0][1])
 
     @property
@@ -146,7 +146,7 @@ class Deck(Building, Shown):
     # Changing.
 
     def set_increments(self, dt: float, count: int) -> None:
-        """Gives the step, of which there must be one, `count` increments of `dt`."""
+        """Gives the only step of the deck `count` increments of `dt`."""
         self.one("DYNAMIC").rows = [[repr(dt), repr(count * dt)]]
         step = self.one("STEP")
         parts = [part for part in step.head.split(",") if not fold(part).startswith("INC=")]
@@ -204,7 +204,7 @@ def _lines(
 
 
 def _input_of(card: Card) -> str:
-    """The name of a file that a line still needs; empty if there is none."""
+    """The name of a file that a line still needs; empty if the line needs no file."""
     return "" if card.keyword in FREE_TEXT else card.parameters.get("INPUT", "")
 
 
@@ -213,7 +213,7 @@ def _read_input(
 ) -> None:
     """Replaces INPUT= of the last line, a keyword line, by the lines of the file that it names.
 
-    A file name with a parameter without value stays as it is.
+    A file name that contains a parameter without value stays as it is.
     """
     if not lines or not lines[-1].startswith("*"):
         return

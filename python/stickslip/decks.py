@@ -42,7 +42,7 @@ def elastic(
     thickness: float = 1.0,
     **damping: float,
 ) -> str:
-    """Text of a material, and of the sections of element sets made of it."""
+    """Text of a material, and of the sections of element sets made of this material."""
     return "".join(
         [
             material("ELASTIC", young, poisson, density, "", **damping),
@@ -60,7 +60,7 @@ def dry(friction: float) -> str:
 
 
 def step(dt: float, increments: int, *cards: str) -> str:
-    """Text of a step of equal increments with its cards."""
+    """Text of a step of equal increments with the cards of the step."""
     head = card(f"STEP, NLGEOM, INC={increments}")
     return "".join([head, card("DYNAMIC, DIRECT", (dt, increments * dt)), *cards, card("END STEP")])
 
@@ -94,12 +94,12 @@ class Grid:
 
     @property
     def next_node(self) -> int:
-        """First label behind the labels of the nodes."""
+        """First free label behind the labels of the nodes."""
         return self.first_node + (self.nx + 1) * (self.ny + 1)
 
     @property
     def next_element(self) -> int:
-        """First label behind the labels of the elements."""
+        """First free label behind the labels of the elements."""
         return self.first_element + self.nx * self.ny
 
     def node(self, i: int, j: int) -> int:
@@ -111,7 +111,7 @@ class Grid:
         return self.first_element + i + j * self.nx
 
     def mesh(self, element_type: str) -> str:
-        """Cards NODE and ELEMENT; both sets have the name of the grid."""
+        """Cards NODE and ELEMENT; the node set and the element set have the name of the grid."""
         nodes = [
             (self.node(i, j), *self.place(i, j))
             for j in range(self.ny + 1)
@@ -159,8 +159,8 @@ class Grid:
 class GridMesh:
     """Any quadrilaterals, with nodes and elements by their indices; labels are consecutive.
 
-    `mesh.Mesh` is for decks that are made of arrays; this class writes its cards itself, with labels from a first node
-    and element on.
+    This class writes its cards itself, with labels from a first node and element on; `mesh.Mesh` is for decks that are
+    made of arrays.
     """
 
     def __init__(
@@ -176,16 +176,16 @@ class GridMesh:
 
     @property
     def next_node(self) -> int:
-        """First label behind the labels of the nodes."""
+        """First free label behind the labels of the nodes."""
         return self.first_node + len(self.nodes)
 
     @property
     def next_element(self) -> int:
-        """First label behind the labels of the elements."""
+        """First free label behind the labels of the elements."""
         return self.first_element + len(self.elements)
 
     def mesh(self, element_type: str) -> str:
-        """Cards NODE and ELEMENT; both sets have the name of the mesh."""
+        """Cards NODE and ELEMENT; the node set and the element set have the name of the mesh."""
         nodes = [(self.first_node + k, *place) for k, place in enumerate(self.nodes)]
         elements = [
             (self.first_element + k, *(self.first_node + node for node in corners))
@@ -220,7 +220,7 @@ def ring(
     first_node: int = 1,
     first_element: int = 1,
 ) -> GridMesh:
-    """A ring between two radii; node (k, j) is the k-th around the ring and the j-th from the inside."""
+    """A ring between two radii; node (k, j) is the k-th node around the ring and the j-th from the inside."""
     nodes = []
     for j in range(across + 1):
         radius = radii[0] + (radii[1] - radii[0]) * j / across
@@ -250,9 +250,9 @@ def disc(
     first_node: int = 1,
     first_element: int = 1,
 ) -> GridMesh:
-    """A disc, turned by an angle: a bulging square of side x side elements, with rings around it.
+    """A disc, turned by an angle: a bulging square of side x side elements, with rings around the square.
 
-    There are 4 `side` nodes on its rim.
+    The rim of the disc has 4 `side` nodes.
     """
     core = 0.55 * radius
     flat = [(2 * i / side - 1, 2 * j / side - 1) for j in range(side + 1) for i in range(side + 1)]

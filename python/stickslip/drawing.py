@@ -1,7 +1,7 @@
 """The mesh for drawing: vertices, outlines of elements with curved sides, and triangles that fill them.
 
-Vertices are the places of `nodal` and three more on each half of a side of a quadratic element, which lie on the
-parabola through its corners and the node between them.
+Vertices are the places of `nodal`, and three more points on each half of a side of a quadratic element, which lie on
+the parabola through its corners and the node between them.
 """
 
 from dataclasses import dataclass
@@ -20,7 +20,7 @@ STRAIGHT = np.array([0.5, 0.5])
 
 @dataclass(frozen=True)
 class Drawing:
-    """Vertices, and the lines and triangles between them."""
+    """Vertices, and the lines and triangles between these vertices."""
 
     nodes: int
     """The first vertices are the N nodes."""
@@ -69,7 +69,7 @@ class Drawing:
         return cls(nodes, (recovery.places, second, second + len(eighths)), table, rings, outline, inner)
 
     def positions(self, nodes: Array) -> Array:
-        """Positions of the vertices [V, 2], computed from those of the nodes [N, 2]."""
+        """Positions of the vertices [V, 2], computed from the positions of the nodes [N, 2]."""
         return self._filled(nodes, PARABOLA)
 
     def values(self, places: Array) -> Array:
@@ -77,7 +77,7 @@ class Drawing:
         return self._filled(places, STRAIGHT)
 
     def _filled(self, known: Array, weights: Array) -> Array:
-        """Numbers at all vertices [V, ...], computed from those at the places, which are the first vertices."""
+        """Numbers at all vertices [V, ...], computed from the numbers at the places, which are the first vertices."""
         for end in self.ends:
             between = self.after[len(known) - self.nodes : end - self.nodes]
             known = np.concatenate([known, np.einsum("vk...,k->v...", known[between[:, : len(weights)]], weights)])
@@ -85,8 +85,8 @@ class Drawing:
 
     @cached_property
     def triangles(self) -> Integers:
-        """Triangles that fill the elements [T, 3]; they meet at the middles of the elements, which count as vertices
-        behind all others."""
+        """Triangles that fill the elements [T, 3]; the triangles of an element meet at its middle; these middles count
+        as further vertices behind all others."""
         middle = self.nodes + len(self.after)
         fans = [
             np.stack([ring, np.roll(ring, -1), np.full(len(ring), middle + element)], axis=1)

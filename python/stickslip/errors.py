@@ -20,7 +20,7 @@ class Fault(Exception):
 
 
 class Missing(Fault, KeyError):
-    """A result has nothing with this name; the text lists the names that exist."""
+    """A result has no data with a given name; the text lists the names that exist."""
 
     __str__ = Exception.__str__
 
@@ -31,6 +31,6 @@ def one_line(error: BaseException) -> str:
 
 
 def not_installed(name: str) -> Fault:
-    """The error for a package that is not installed; it says what to install."""
+    """The error for a package that is not installed; the text says what to install."""
     what = f'"stickslip[{EXTRAS[name]}]"' if name in EXTRAS else name
     return Fault(f"this needs the package {name}: pip install {what}")

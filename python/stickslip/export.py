@@ -1,6 +1,7 @@
 """Writes a result in the format of other programs.
 
-vtu   JOB_0000.vtu ... and JOB.pvd, which names them with their times (needs the package pyvista)
+vtu   JOB_0000.vtu and further files, one for each frame, and JOB.pvd, which names these files with their times (needs
+      the package pyvista)
 xdmf  JOB.xdmf: all frames as a series, which refers to the values in the result file
 frd   JOB.frd: mesh, displacements and stresses at nodes of all frames, for the programs around CalculiX
 csv   JOB.csv: all histories, a row for each increment
@@ -19,7 +20,7 @@ from stickslip.whole import whole, write_text
 
 
 def vtu(result: Result, folder: Path) -> Iterator[Path]:
-    """Writes a file for every frame, and the file that lists them."""
+    """Writes a file for every frame, and the file that lists these files."""
     entries = []
     for frame in result.frames:
         path = folder / f"{result.job}_{frame.index:04d}.vtu"

@@ -1,8 +1,8 @@
 """Names of fields: names that users write, descriptions in words, and numbers that are made of their components.
 
 A name is the name in the result file, a name of Abaqus, or a word: `CONTACT_PRESSURE`, `CPRESS` and `contact-pressure`
-are the same, and so are `S:1`, `S:xx` and `S11`. After a colon stands a component, or a number made of several
-components: `U:magnitude`, `S:max`. Capitals do not matter.
+name the same field, and `S:1`, `S:xx` and `S11` the same component. A component stands after a colon, or a number made
+of several components: `U:magnitude`, `S:max`. Capitals in names do not matter.
 """
 
 from collections.abc import Callable, Container, Iterable
@@ -114,7 +114,7 @@ MADE: dict[int, dict[str, tuple[str, Made]]] = {
 
 
 def _sorted_principal(k: int) -> Callable[[Array, Array], Array]:
-    """The principal stress number k of three, from the smallest on."""
+    """The principal stress number k of three, counted from the smallest."""
 
     def of(s: Array, across: Array) -> Array:
         return np.sort(np.stack([_principal(-1.0)(s), _principal(1.0)(s), across], axis=-1), axis=-1)[..., k]
@@ -157,8 +157,8 @@ def also(field: str, count: int) -> dict[str, str]:
 
 
 def known(name: str, there: Container[str]) -> str:
-    """A name in the spelling of the result file, with a component after its colon; `there` holds the fields of the
-    file."""
+    """A name in the spelling of the result file, with a component after its colon; `there` holds the names of the
+    fields in the file."""
     path, colon, part = name.partition(":")
     if path not in there:
         folded = path.strip().upper().replace("-", "_").replace(" ", "_")
@@ -208,7 +208,7 @@ def _unique(names: Iterable[str]) -> list[str]:
 
 def tensor_columns(name: str) -> dict[str, Columns]:
     """The fields that a tensor of the file contains, with their columns: `S` in the plane (xx yy xy) and `S33` across
-    it."""
+    the plane."""
     base = name.removesuffix(AT_NODES)
     return {name: [0, 1, 3], f"{base}33{name[len(base):]}": 2}
 

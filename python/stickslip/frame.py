@@ -36,12 +36,11 @@ ROUND_OFF = 1e-9
 
 @dataclass(frozen=True)
 class Frame(Mapping[str, Any]):
-    """A frame gives fields at one time by their names: `frame["U"]` [N, 2] at the nodes, `frame["S"]` [E, 3] of
-    elements.
+    """A frame gives fields at one time by name: `frame["U"]` [N, 2] at the nodes, `frame["S"]` [E, 3] of elements.
 
-    Vectors lose their third component, which is 0. Stresses and strains are means over the elements, (xx, yy, xy); so
-    are the values at nodes, `frame["S_AT_NODES"]` [N, 3]. Components have names, such as `frame["S11"]` [E] (see
-    `fields`).
+    Vectors lose their third component, which is 0. Stresses and strains are means over the elements, (xx, yy, xy).
+    Values at nodes, `frame["S_AT_NODES"]` [N, 3], have the same components. Components have names, such as
+    `frame["S11"]` [E] (see `fields`).
     """
 
     frames: "Frames"
@@ -83,10 +82,11 @@ class Frame(Mapping[str, Any]):
         return self.at_places(name)[: len(self.result.coordinates)]
 
     def at_places(self, name: str) -> NDArray[Any]:
-        """A field at the places [P, ...] of `nodal.Recovery`; a node between materials has a place for each of them.
+        """A field at the places [P, ...] of `nodal.Recovery`; a node between materials has a place for each of these
+        materials.
 
-        Invariants are computed from the stresses at the places. If the program has written a field at nodes
-        (`POSITION=NODES`), its values are used at nodes of one material.
+        Invariants of stresses are computed from the stresses at the places. If the program has written a field at nodes
+        (`POSITION=NODES`), these values are used at nodes of one material.
         """
         spelled = self.frames.known(name)
         field, colon, _ = spelled.partition(":")
@@ -104,7 +104,7 @@ class Frame(Mapping[str, Any]):
         return self.frames.part(spelled).of(rows) if colon else rows
 
     def full(self, name: str) -> NDArray[Any]:
-        """A field including third components of vectors and rigid segments."""
+        """A field, including third components of vectors, and values at rigid segments."""
         stored, columns = self.frames.stored[self.frames.known(name)]
         rows = self.rows(stored)
         return rows if columns is None else rows[:, columns]
@@ -185,7 +185,7 @@ class Frames(Sequence[Frame]):
         return self.fields[self.known(name).partition(":")[0]]
 
     def part(self, name: str) -> Part:
-        """The number that a name asks for; a name that must name a component and does not raises a Fault."""
+        """The number that a name asks for; a name that lacks a necessary component raises a Fault."""
         spelled = self.known(name)
         field = spelled.partition(":")[0]
         shape = self.result.item(self.dataset(field)).shape[1:]
@@ -196,7 +196,7 @@ class Frames(Sequence[Frame]):
         return part(spelled, count, self.result.is_axisymmetric)
 
     def dataset(self, field: str) -> str:
-        """Path of the dataset that holds a field with exactly this name."""
+        """Path of the dataset that holds a field with exactly the given name."""
         return f"VTKHDF/{self.fields[field]}/{self.stored[field][0]}"
 
     def field(self, name: str) -> tuple[str, NDArray[Any]]:

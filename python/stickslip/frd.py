@@ -1,9 +1,9 @@
 """A result in the text format of CalculiX, .frd, for cgx, PrePoMax and others: mesh, displacements and stresses at
 nodes.
 
-The columns follow the manual of CalculiX GraphiX, section "Result Format". Numbers have six digits. Stresses are
-averaged at nodes within a body and a material (see `nodal`); a node between two materials gets only one of the two
-values. Segments of rigid surfaces are beams of two nodes.
+The columns follow the manual of CalculiX GraphiX, section "Result Format". Numbers in the file have six digits.
+Stresses are averaged at nodes within a body and a material (see `nodal`); a node between two materials gets only the
+value of one material. Segments of rigid surfaces are beams of two nodes.
 """
 
 from collections.abc import Iterable, Iterator
@@ -72,7 +72,7 @@ def _elements(result: Result, types: list[int]) -> Iterator[str]:
 def _results(
     frame: Frame, number: int, kind: tuple[str, list[str]], labels: Integers, values: Array
 ) -> Iterator[str]:
-    """A set of results at nodes."""
+    """The lines of a set of results at nodes."""
     name, components = kind
     yield f"    1PSTEP{number:26d}{1:12d}{number:12d}"
     yield f"  100C{'':6}{frame.time:12.5E}{len(labels):12d}{'':20}{1:2d}{number:5d}{'':10}{1:2d}"
@@ -83,7 +83,8 @@ def _results(
 
 
 def _rows(labels: Integers, values: Array) -> Iterable[str]:
-    """A line for each node; numbers whose exponent would need three digits are written as 0 or as no number."""
+    """A line for each node; a number whose exponent would need three digits is written as 0 if its size is too small,
+    and as NaN if its size is too large."""
     size = np.abs(values)
     written = np.where(size < 1e-99, 0.0, np.where(size < 9.9999e99, values, np.nan))
     numbers = "".join(["%12.5E"] * values.shape[1])

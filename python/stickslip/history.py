@@ -1,7 +1,7 @@
 """Histories of a result, with one row per increment; row 0 is the start (docs/output.md, /history).
 
-A group reads a dataset when it is accessed, `group.name` or `group["name"]`, up to the last complete row. Every result
-has the names that the classes annotate; a result may have more.
+A group reads a dataset when the dataset is accessed, `group.name` or `group["name"]`, up to the last complete row.
+Every result has the names that the classes annotate; a result may have more.
 """
 
 from collections.abc import Iterator, Mapping
@@ -35,7 +35,7 @@ class Group(Mapping[str, Any]):
 
     @property
     def _stored(self) -> Mapping[str, Any]:
-        """The group in the file; an empty group if the result lacks it."""
+        """The group in the file; an empty group if the result lacks the group."""
         return self._result.item(self._path) if self._result.has(self._path) else {}
 
     def __getitem__(self, name: str) -> Any:
@@ -80,7 +80,7 @@ class Named(Group, Generic[Each]):
 
 
 class Energy(Group):
-    """Energy ledger [I]. All accounts except the first two are sums since the start."""
+    """Energy ledger [I]. All energies except the first two (kinetic and strain energy) are sums since the start."""
 
     kinetic: Array
     strain: Array
@@ -104,14 +104,14 @@ class Energy(Group):
 
     @property
     def largest(self) -> float:
-        """Largest magnitude of the accounts, without the balance, and of the works that cancel in them; NaN if one
-        value is NaN."""
+        """Largest magnitude of the energies, without the balance, and of the works that cancel in these energies; NaN
+        if one value is NaN."""
         names = [name for name in (*ENERGIES, "scale") if name != "balance" and name in self]
         return float(np.max([np.abs(self[name]).max() for name in names]))
 
     @property
     def noise(self) -> float:
-        """Largest energy that counts as round-off."""
+        """Largest energy that counts as round-off in the balance."""
         return float(np.max(self["round_off"])) if "round_off" in self else 0.0
 
 
@@ -234,7 +234,7 @@ class ElementSets(Named[ElementSet]):
 
 
 class Rigid(Group):
-    """Motion of the reference node of a rigid surface, and the reaction there."""
+    """Motion of the reference node of a rigid surface, and the reaction at this node."""
 
     position: Array
     U: Array
@@ -313,7 +313,7 @@ class History(Group):
     }
 
     def __getitem__(self, name: str) -> Any:
-        """A dataset or group by its path; groups that a result may lack are empty if they are missing."""
+        """A dataset or group by its path; a group that a result may lack is empty if it is missing."""
         if name in self._groups and name not in self._stored:
             return self._groups[name](self._result, f"{self._path}/{name}")
         return super().__getitem__(name)

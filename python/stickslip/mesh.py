@@ -56,7 +56,8 @@ class Mesh:
         node_sets: Mapping[str, ArrayLike] = {},
         sides: Mapping[str, ArrayLike] = {},
     ) -> None:
-        """`elements` is an array [E, k] with k = 3, 4, 6 or 8 nodes, or a list of elements that may differ."""
+        """`elements` is an array [E, k] with k = 3, 4, 6 or 8 nodes, or a list of elements with different numbers of
+        nodes."""
         self.points = _plane(np.asarray(points, dtype=np.float64))
         self.elements = [np.asarray(element, dtype=np.int64) for element in elements]
         self.element_sets = {name: _indices(one) for name, one in element_sets.items()}
@@ -85,7 +86,7 @@ class Mesh:
                 raise Fault(f"{what} have {kind} {worst}: there are 0 to {count[kind] - 1}")
 
     def faces(self, name: str) -> list[tuple[int, int]]:
-        """Element index and number of the side, from 1, for each side of the surface with this name."""
+        """Element index and number of the side, from 1, for each side of the surface with a given name."""
         if self._owner is None:
             self._owner = {}
             for index, element in enumerate(self.elements):
@@ -109,8 +110,8 @@ class Mesh:
         """A mesh made of the triangles and quadrilaterals, linear or quadratic, of a mesh of meshio, with its sets and
         physical groups.
 
-        Sets of lines become sides and, with their nodes, node sets. If there are no sets of elements, all elements form
-        the set ALL. Nodes that belong to no element are left out.
+        Sets of lines become sides; the nodes of the lines become node sets. If there are no sets of elements, all
+        elements form the set ALL. Nodes that belong to no element are left out.
         """
         blocks = [(block.type, np.asarray(block.data)) for block in mesh.cells]
         groups: dict[str, list[Integers]] = {
@@ -240,12 +241,12 @@ def _indices(values: ArrayLike) -> Integers:
 
 
 def _corners(element: Integers) -> Integers:
-    """The corners of an element; its nodes between corners come after them."""
+    """The corners of an element; the nodes between corners come after the corners."""
     return element[: len(element) // 2] if len(element) > 4 else element
 
 
 def _turned(element: Integers) -> Integers:
-    """The element with its nodes in the opposite direction."""
+    """The element with its nodes in the opposite order of rotation."""
     if len(element) <= 4:
         return element[::-1]
     corners, between = np.split(element, 2)

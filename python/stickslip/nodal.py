@@ -1,8 +1,9 @@
 """Values of elements at nodes, recovered from the means over elements by averaging within a body and a material.
 
-The value at a corner is that of a plane, fitted with weights 1/distance^4 to the means at the centres of the elements
-there and of their neighbours. Inside a body this is almost the plain mean; at its surface it is a linear extrapolation.
-A linear field is recovered exactly at every node. A node between two corners has the mean of their values.
+The value at a corner comes from a plane, which is fitted with weights 1/distance^4 to the means at the centres of the
+elements at the corner and of their neighbours. Inside a body the recovered value is almost the plain mean; at the
+surface it is a linear extrapolation. A linear field is recovered exactly at every node. A node between two corners has
+the mean of the values at the corners.
 """
 
 from dataclasses import dataclass
@@ -16,14 +17,14 @@ FARTHEST = 8.0
 
 
 def around_element(cell: Integers) -> Integers:
-    """The nodes of an element in their order around it; a node between two corners stands between them."""
+    """The nodes of an element in their order around it; a node between two corners stands between these corners."""
     return np.reshape(cell, (2, -1)).T.ravel() if len(cell) > 4 else cell
 
 
 @dataclass(frozen=True)
 class Recovery:
-    """Places are pairs of a node and a material of its elements: the first N places are the nodes, further places
-    belong to nodes of several materials."""
+    """Places are pairs of a node and a material of the elements at the node: the first N places are the nodes, further
+    places belong to nodes of several materials."""
 
     twins: Integers
     """Nodes of the places behind the first N [P - N]."""

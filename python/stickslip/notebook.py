@@ -1,6 +1,7 @@
-"""Support of notebooks: whether Python runs in one, display of results, and a bar that shows the progress of a run.
+"""Support of notebooks: a test whether Python runs in a notebook, display of results, and a bar that shows the progress
+of a run.
 
-IPython is used if it is installed.
+The module uses IPython if it is installed.
 """
 
 import html
@@ -29,7 +30,7 @@ class Shown:
 
 
 class Paged(Shown):
-    """An object that also has a report page."""
+    """An object that displays itself and also has a report page."""
 
     pages: ClassVar[dict[type, Callable[[Any, int], str]]] = {}
     """Makes the page of an object in a frame of a height in pixels, by its class; `summary` knows how."""
@@ -44,7 +45,7 @@ class Paged(Shown):
 
 
 class Bar:
-    """A bar below the cell that shows the progress of a run; calling it with a `Progress` moves it."""
+    """A bar below the cell that shows the progress of a run; a call with a `Progress` moves the bar."""
 
     def __init__(self) -> None:
         from IPython.display import HTML, display

@@ -1,4 +1,5 @@
-"""Runs the program: `run` solves a deck, `check` reads it; messages of the program become warnings and exceptions."""
+"""Runs the program: `run` solves a deck, `check` only reads a deck; messages of the program become warnings and
+exceptions."""
 
 import os
 import re
@@ -70,7 +71,7 @@ class RunFailed(Fault):
 
 
 class DeckRejected(RunFailed):
-    """The deck has errors: `diagnostics` holds them."""
+    """The deck has errors, which `diagnostics` holds."""
 
 
 class RunStopped(RunFailed):
@@ -109,8 +110,8 @@ class Progress:
 
 
 def binary() -> Path:
-    """Path of the program: $STICKSLIP, or the first that exists of the program installed with this package, on the
-    search path, and built in a checkout."""
+    """Path of the program: $STICKSLIP, or the first existing one of these: the program installed with this package, on
+    the search path, and built in a checkout."""
     if "STICKSLIP" in os.environ:
         return Path(os.environ["STICKSLIP"])
     name = "stickslip.exe" if os.name == "nt" else "stickslip"
@@ -148,13 +149,14 @@ def run(
 ) -> Result:
     """Solves a deck, which is a file or a `Deck`, and returns its result.
 
-    The results go to the folder `output`. Their name is that of the file of the deck, or `job` for a `Deck`, which is
-    also written to this folder. Existing results are replaced, unless `overwrite` is False or `resume` continues the
-    run from its checkpoint. `options` are those of `stickslip run`: frames, every, solver, threads, checkpoint, extend
-    and oldjob have a value; strict, lenient, verbose and resume are True. `words` holds options as they are typed on
-    the command line. `parameters` gives values of parameters of the deck, which replace those of its `*PARAMETER`
-    cards. `progress` is True to show the progress of the run (as a bar in a notebook), or a function that is called
-    with a `Progress` several times a second. A failed run raises DeckRejected, RunStopped or RunFailed.
+    The results go to the folder `output`. The results have the name of the file of the deck; for a `Deck` the results
+    have the name `job`, and the deck is also written to this folder. Existing results are replaced, unless `overwrite`
+    is False or `resume` continues the run from its checkpoint. `options` are the options of `stickslip run`: frames,
+    every, solver, threads, checkpoint, extend and oldjob have a value; strict, lenient, verbose and resume are True.
+    `words` holds further options as they are typed on the command line. `parameters` gives values of parameters of the
+    deck, which replace the values of its `*PARAMETER` cards. `progress` is True to show the progress of the run (as a
+    bar in a notebook), or a function that is called with a `Progress` several times a second. A failed run raises
+    DeckRejected, RunStopped or RunFailed.
     """
     folder = Path(output)
     values = dict(parameters or {})
@@ -225,7 +227,8 @@ def check(
 
 @contextmanager
 def first_frame(deck: Deck, parameters: Mapping[str, Value]) -> Iterator[Result | None]:
-    """A result up to its first frame, which has the names of all histories; None if the run writes no frame."""
+    """A result up to its first frame, which has the names of all histories; the result is None if the run writes no
+    frame."""
     with tempfile.TemporaryDirectory() as folder:
         path = deck.write(Path(folder) / "job.inp")
         result = path.with_suffix(".vtkhdf")
@@ -288,7 +291,7 @@ def _wait(process: subprocess.Popen[bytes], watch: Callable[[bool], None] | None
 
 
 def _duration(deck: Path) -> float | None:
-    """Total time of all steps of a deck, if it can be determined."""
+    """Total time of all steps of a deck, if this time can be determined."""
     try:
         return Deck.read(deck).duration
     except (OSError, Fault):  # the program says what is wrong
@@ -316,7 +319,7 @@ def _watch(
 
 
 def _stamp(file: Path) -> tuple[int, ...]:
-    """A value that changes whenever a file is written; empty if there is no file."""
+    """A value that changes whenever a file is written; empty if the file does not exist."""
     try:
         found = file.stat()
     except OSError:

@@ -1,14 +1,14 @@
 """Histories by name: `energy/kinetic`, `contact/A_B/force:1`, `nodes/TIP[3]/U:2`.
 
-A name is the path of a dataset below /history (see docs/output.md). After a colon stands the component of a vector,
-from 1. The number of one node may follow the name of a node set in brackets; without this number, displacements and
-velocities are means over the set, and reactions are sums. Element sets work in the same way, `elements/BLOCK[7]/S:1`;
-without a number, stresses and strains are means, and energies are sums. The names without a number also work if a
-result has only sums and means of a set (`TOTALS=ONLY`). Values at integration points, `elements/BLOCK/points[7.2]/S:1`,
-have the element and the number of the point in brackets; springs and dashpots, `connectors[9]/force`, have their
-element, and hinges, `hinges[3-4]/force:1`, their two nodes. In histories of bodies, `bodies/velocity[0]:1`, the number
-in brackets is that of the body. Names of Abaqus are allowed, too: `nodes/TIP/U2` and `elements/BLOCK/S11` (see
-`fields`).
+A name is the path of a dataset below /history (see docs/output.md). The component of a vector stands after a colon and
+counts from 1. The number of one node may follow the name of a node set in brackets; without this number, displacements
+and velocities are means over the set, and reactions are sums. Element sets work in the same way,
+`elements/BLOCK[7]/S:1`; without a number, stresses and strains are means, and energies are sums. The names without a
+number also work if a result has only sums and means of a set (`TOTALS=ONLY`). Values at integration points,
+`elements/BLOCK/points[7.2]/S:1`, have the element and the number of the point in brackets; springs and dashpots,
+`connectors[9]/force`, have their element, and hinges, `hinges[3-4]/force:1`, their two nodes. In histories of bodies,
+`bodies/velocity[0]:1`, the number in brackets is the number of the body. Names of Abaqus are also allowed:
+`nodes/TIP/U2` and `elements/BLOCK/S11` (see `fields`).
 """
 
 import re
@@ -50,7 +50,7 @@ class Quantity:
 
     @property
     def title(self) -> str:
-        """Title of an axis; the name of a single component is part of it."""
+        """Title of an axis; the title includes the name of a single component."""
         component = next(iter(self.parts)) if self.alone else ""
         return f"{self.quantity}, {component}" if component else self.quantity
 
@@ -61,7 +61,7 @@ class Quantity:
 
 
 def find(result: ResultFile, name: str) -> Quantity:
-    """The history with this name; if there is none, a Fault lists the names that exist."""
+    """The history with a given name; if no history has this name, a Fault lists the names that exist."""
     place, slash, field = name.rpartition("/")
     matched = NAME.fullmatch(place + slash + known(field, {path.rpartition("/")[2] for path in result.histories}))
     if matched is None:
@@ -90,7 +90,7 @@ def force_against_displacement(result: ResultFile) -> list[tuple[str, str]]:
     """Names of the displacements of rigid surfaces and node sets that a force moves, and of the forces in the same
     directions.
 
-    The pair whose force does the largest work comes first.
+    The displacement whose force does the largest work comes first.
     """
     places = {re.sub(r"(/mean|/sum)?/[^/]*$", "", path) for path in result.histories}
     works: dict[tuple[str, str], float] = {}
@@ -118,7 +118,7 @@ def _stored(result: ResultFile, place: str, field: str) -> Array | None:
 
 @dataclass(frozen=True)
 class Members:
-    """The objects with a column each in a history: bodies, or members of a group."""
+    """The objects that have a column of a history each: bodies, or members of a group."""
 
     kind: str
     """Such as `body`, `node`, `element`; empty where a history has no members."""
@@ -133,7 +133,7 @@ class Members:
 
     @classmethod
     def of(cls, result: ResultFile, path: str) -> "Members":
-        """The members of a history; empty if it has no members."""
+        """The members of a history; empty if the history has no members."""
         if path not in result.histories:
             return cls("", "", [], [])
         if PER_BODY.fullmatch(path):

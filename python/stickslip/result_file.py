@@ -1,4 +1,5 @@
-"""Result files `JOB.vtkhdf` (see docs/output.md), read with h5py alone: stored data by the paths in the file.
+"""Result files `JOB.vtkhdf` (see docs/output.md), read with h5py alone; the path of a dataset in the file gives its
+data.
 
 The file of a running or killed job is read up to the rows that are complete. Data that cannot be read raises a `Fault`.
 """
@@ -61,14 +62,15 @@ class ResultFile:
             return data[()] if start is None and end is None else data[start:end]
 
     def item(self, name: str) -> Any:
-        """A dataset or a group by its path in the file; it is kept, because finding it takes longer than reading it."""
+        """A dataset or a group by its path in the file; the object is kept, because finding an object takes longer than
+        reading it."""
         with self.reading(name):
             if name not in self._found:
                 self._found[name] = self.file[name]
             return self._found[name]
 
     def has(self, name: str) -> bool:
-        """Whether the file has a dataset or a group of this path."""
+        """Whether the file has a dataset or a group with a given path."""
         with self.reading(name):
             return name in self._found or name in self.file
 
@@ -110,7 +112,7 @@ class ResultFile:
 
     @cached_property
     def outlines(self) -> list[Integers]:
-        """Node indices in order around each element; a node between two corners stands between them."""
+        """Node indices in order around each element; a node between two corners stands between these corners."""
         return list(map(around_element, self.cells))
 
     @cached_property
@@ -125,7 +127,7 @@ class ResultFile:
 
     @cached_property
     def rigid(self) -> Integers:
-        """Segments of rigid surfaces, [segments, 2] node indices, with the obstacle on the left."""
+        """Segments of rigid surfaces, [segments, 2] node indices, with the obstacle on their left."""
         end = self.read("VTKHDF/Offsets")[len(self.cells)]
         return self.read("VTKHDF/Connectivity")[end:].reshape(-1, 2)
 
@@ -146,7 +148,7 @@ class ResultFile:
 
     @cached_property
     def middles(self) -> dict[int, tuple[int, int]]:
-        """The two corners of each side that has a node between them, by this node."""
+        """For each node between two corners of a side, these two corners."""
         found: dict[int, tuple[int, int]] = {}
         for cell in self.cells:
             if len(cell) > 4:
@@ -219,7 +221,8 @@ class ResultFile:
         return rows
 
     def _complete(self, group: str, datasets: Iterable[Sized]) -> int:
-        """Complete rows of the datasets of a group; files of older programs do not state this number."""
+        """Complete rows of the datasets of a group; files of older programs do not state the number of complete
+        rows."""
         rows = min(map(len, datasets), default=0)
         return min(rows, int(self.file[group].attrs.get("rows", rows)))
 

@@ -1,6 +1,6 @@
 """Summaries of results and decks with a small picture, which notebooks show, and the report page in a frame.
 
-Packages that take long to import are imported when they are needed; matplotlib is used if it is installed.
+Packages with a long import time are imported only when they are needed; matplotlib is used if it is installed.
 """
 
 import base64
@@ -56,7 +56,7 @@ def _image(kind: str, data: bytes) -> str:
 
 
 def deck_html(deck: Deck) -> str:
-    """Picture of the model of a deck and the messages of the program about it; if there is no program, the number of
+    """Picture of the model of a deck and the messages of the program about the deck; without the program, the number of
     cards."""
     counts: dict[str, int] = {}
     for card in deck.cards:

@@ -1,4 +1,4 @@
-"""Files that are written completely or not at all: they are written under an unused name and then renamed.
+"""Files that are written completely or not at all: a file is written under an unused name and then renamed.
 
 Links are never followed for writing, and a device, a pipe or a link is not replaced.
 """

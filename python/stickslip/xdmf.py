@@ -46,7 +46,7 @@ def text_of(result: Result, folder: Path) -> Iterator[str]:
 
 
 def _mesh(result: Result, source: str) -> Iterator[str]:
-    """The cells, whose numbers are part of the text, and the nodes."""
+    """The text for the cells, whose numbers are part of the text, and for the nodes."""
     nodes = np.split(result.read("VTKHDF/Connectivity"), result.read("VTKHDF/Offsets")[1:-1])
     types = result.read("VTKHDF/Types").tolist()
     rows = [[*CELLS[kind], *each.tolist()] for kind, each in zip(types, nodes)]

@@ -1,5 +1,5 @@
 //! The allocator of the program: if the system refuses memory, the program ends with exit code 4 and a line that states
-//! the memory it needed, not with an abort.
+//! the memory that was requested.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io;
@@ -9,8 +9,8 @@ use super::error::Exit;
 use crate::output::memory_need;
 use crate::system::exit_now;
 
-/// The allocator of the system. If it has no memory, the program ends with [`Exit::FileSystem`]; results that have been
-/// written stay, as after a kill.
+/// The allocator of the system. If the system has no memory, the program ends with [`Exit::FileSystem`]; the results
+/// already written stay, as after a kill.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Allocator;
 
@@ -33,7 +33,7 @@ unsafe impl GlobalAlloc for Allocator {
     }
 }
 
-/// Returns the memory, or ends the program if there is none.
+/// Returns the memory, or ends the program if there is no memory.
 #[inline]
 fn there(memory: *mut u8, size: usize) -> *mut u8 {
     if memory.is_null() {

@@ -159,7 +159,7 @@ pub(super) struct DeckArgs {
 }
 
 impl DeckArgs {
-    /// How the reader treats doubtful decks.
+    /// Strictness with which the reader treats doubtful decks.
     pub fn strictness(&self) -> Strictness {
         match (self.strict, self.lenient) {
             (true, _) => Strictness::Strict,
@@ -214,7 +214,7 @@ pub(super) struct RunArgs {
     pub verbose: bool,
 }
 
-/// Options of `run` that change what is computed or written.
+/// Options of `run` that change the computation or the results.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Options {
     strict: bool,
@@ -226,7 +226,7 @@ pub(super) struct Options {
 }
 
 impl RunArgs {
-    /// The options of `run` that change what is computed or written, as text.
+    /// The options of `run` that change the computation or the results, as text.
     pub fn options(&self) -> String {
         let options = Options {
             strict: self.deck.strict,
@@ -240,7 +240,7 @@ impl RunArgs {
         serde_json::to_string(&options).unwrap_or_default()
     }
 
-    /// Sets the options of `run` from such a text.
+    /// Sets the options of `run` from a text made by [`Self::options`].
     pub fn take_options(&mut self, text: &str) {
         let options: Options = serde_json::from_str(text).unwrap_or_default();
         (self.deck.strict, self.deck.lenient) = (options.strict, options.lenient);
@@ -249,7 +249,7 @@ impl RunArgs {
         self.solver = options.solver;
     }
 
-    /// How much to print.
+    /// Amount of text that the run prints.
     pub fn verbosity(&self) -> Verbosity {
         match (self.quiet, self.verbose) {
             (true, _) => Verbosity::Quiet,
@@ -384,7 +384,7 @@ fn positive_count(text: &str) -> Result<usize, String> {
     }
 }
 
-/// Largest number of threads for each processor: more threads would only wait for each other.
+/// Largest number of threads for each processor: further threads would only wait for each other.
 const THREADS_PER_PROCESSOR: usize = 4;
 
 fn thread_count(text: &str) -> Result<usize, String> {

@@ -99,7 +99,7 @@ fn openable(path: &Path) -> Result<(), CliError> {
 const MESSAGES: &str = include_str!("../../docs/messages.md");
 
 /// Explains keywords, codes of messages and words of other programs, one after the other; of the words that remain, the
-/// longest known beginning is explained next.
+/// longest known beginning is always explained next.
 pub(super) fn explain(args: &ExplainArgs) -> Result<Exit, CliError> {
     let mut rest = &args.words[..];
     let mut texts = Vec::new();
@@ -179,8 +179,8 @@ fn unknown(words: &[String]) -> CliError {
 /// Largest number of keywords that are suggested for a word.
 const MOST_ABOUT: usize = 5;
 
-/// Keywords whose name or explanation has a word: first keywords that are read, and among them first those with the
-/// word in their names.
+/// Keywords whose name or explanation has a word: keywords that the program reads come first, and among these the
+/// keywords with the word in their names.
 fn keywords_about(word: &str) -> Vec<&'static str> {
     let word = word.to_lowercase();
     let word = word.strip_suffix('s').unwrap_or(&word);
@@ -210,8 +210,8 @@ fn keywords_about(word: &str) -> Vec<&'static str> {
     names.take(MOST_ABOUT).collect()
 }
 
-/// Writes a deck as one flat deck, after a test that the flat deck reads as the same model. A deck that `check` rejects
-/// is rejected here, too.
+/// Writes a deck as one flat deck, after a test that the flat deck reads as the same model. `flatten` rejects a deck
+/// that `check` rejects.
 pub(super) fn flatten(args: &FlattenArgs) -> Result<Exit, CliError> {
     openable(&args.deck.path)?;
     let earlier = old_job(&args.deck)?.map(|earlier| earlier.as_earlier_deck());
@@ -276,8 +276,8 @@ pub(super) fn lcp(args: &LcpArgs) -> Result<Exit, CliError> {
     })
 }
 
-/// Writes a file completely or not at all; an existing file is replaced only if the user asks for it. Anything that is
-/// not a regular file stays; a link is replaced by a file.
+/// Writes a file completely or not at all; an existing file is replaced only if the user asks for it. The function
+/// refuses to replace anything but a regular file; it replaces a link by a file.
 pub(super) fn write_file(path: &Path, text: &str, overwrite: bool) -> Result<(), CliError> {
     let failed = FileError::new("write", path);
     match fs::symlink_metadata(path) {
@@ -308,7 +308,7 @@ pub(super) struct Loaded {
     pub all_messages: String,
     /// Errors, warnings and notes as JSON.
     pub json: String,
-    /// Messages for the screen of `run`, without those about differences from other codes.
+    /// Messages for the screen of `run`, without the messages about differences from other codes.
     pub messages: String,
     /// Messages without colour, for the log.
     pub plain_messages: String,
@@ -332,7 +332,7 @@ type ReadDeck = fn(&DeckArgs, Option<EarlierDeck>, bool) -> Loaded;
 /// Function that solves all steps of a model.
 type Solve = fn(&PreparedModel, &mut dyn Observer) -> Result<RunSummary, RunError>;
 
-/// Reader and solver that the commands call; tests replace them.
+/// Reader and solver that the commands call; tests replace these functions.
 pub(super) struct Numerics {
     pub load: ReadDeck,
     pub solve: Solve,

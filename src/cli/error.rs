@@ -25,7 +25,7 @@ pub enum Exit {
     /// The command line is wrong, or asks for threads that cannot be started.
     Usage = 3,
     /// A file or the screen could not be read or written, results exist already, or another run has
-    /// the job; the run does not fit into the free memory.
+    /// the job; or the run does not fit into the free memory.
     FileSystem = 4,
     /// The terminal was closed (SIGHUP); the results up to that point are valid.
     HungUp = 129,
@@ -88,7 +88,7 @@ pub(super) enum CliError {
         /// Text that says which results can be read.
         kept: Option<String>,
     },
-    /// Writing to the standard output failed, except by a closed pipe.
+    /// Writing to the standard output failed for a reason other than a closed pipe.
     #[error("cannot write the standard output: {}", reason(.0))]
     Screen(io::Error),
     /// Signals cannot be received.

@@ -15,7 +15,7 @@ const PYTHON: &str = "STICKSLIP_PYTHON";
 /// The environment variable that tells the package which program this is.
 const PROGRAM: &str = "STICKSLIP";
 
-/// Python code that ends with success if Python has the package; the option -P, which is passed too, needs Python 3.11.
+/// Python code that ends with success if Python has the package; the option -P, with which it runs, needs Python 3.11.
 const HAS_PACKAGE: &str =
     "import importlib.util, sys; sys.exit(importlib.util.find_spec('stickslip') is None)";
 
@@ -47,7 +47,7 @@ pub(super) fn run(command: &PackageCommand) -> Result<Exit, CliError> {
 /// A Python interpreter that may have the package.
 struct Python {
     path: PathBuf,
-    /// Folder of the package, if it is not installed.
+    /// Folder of the package, if the package is not installed.
     package: Option<PathBuf>,
 }
 
@@ -59,7 +59,7 @@ impl Python {
         }
     }
 
-    /// A command of this interpreter, which does not import modules from the current folder.
+    /// A command of the interpreter, which does not import modules from the current folder.
     fn command(&self) -> Command {
         let mut command = Command::new(&self.path);
         command.arg("-P");
@@ -85,8 +85,9 @@ impl Python {
     }
 }
 
-/// Interpreters that may have the package: only the one of STICKSLIP_PYTHON if it is set; else those of a checkout in
-/// which the program was built, those next to the program, and those on the search path.
+/// Interpreters that may have the package: only the interpreter named by STICKSLIP_PYTHON, if this variable is set.
+/// Otherwise the interpreters of the checkout in which the program was built, next to the program, and on the search
+/// path.
 fn pythons(program: Option<&Path>) -> Vec<Python> {
     if let Some(named) = env::var_os(PYTHON).filter(|name| !name.is_empty()) {
         return vec![Python::new(named)];

@@ -1,4 +1,4 @@
-//! The subcommand `run`: from the deck to the finished result files, however the run ends.
+//! The subcommand `run`: from the deck to the finished result files, for every way in which a run may end.
 
 use std::error::Error;
 use std::time::Duration;
@@ -196,7 +196,7 @@ fn solve(
     }
 }
 
-/// Starts the threads of the program, of which this thread is the first, and returns their number.
+/// Starts the threads of the program and returns their number, which includes the calling thread.
 fn start_threads(wanted: Option<usize>) -> Result<usize, CliError> {
     let threads = wanted.unwrap_or_else(processors);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
@@ -225,8 +225,7 @@ fn header(
     lines
 }
 
-/// Applies the command line to the steps; returns a note for each value of the deck that it
-/// replaces.
+/// Applies the command line to the steps; returns a note for each value of the deck that the command line replaces.
 fn override_steps(args: &RunArgs, steps: &mut [Step]) -> Vec<String> {
     let mut notes = vec![];
     for (step, number) in steps.iter_mut().zip(1..) {

@@ -12,13 +12,13 @@ use crate::output::Interrupt;
 use crate::system::{HANG_UP, TERMINATE, exit_now, on_signals};
 
 /// Time after the first signal within which further signals count as the same request: often a process and its group
-/// each get one.
+/// both get a signal.
 const ONE_REQUEST: Duration = Duration::from_millis(250);
 
 /// Starts to receive signals, except signals that were ignored when the program started (as by `nohup`).
 ///
 /// # Errors
-/// The system refuses the handlers.
+/// The system refuses the signal handlers.
 pub(super) fn receive() -> io::Result<Interrupt> {
     let interrupt = Interrupt::default();
     let request = interrupt.clone();

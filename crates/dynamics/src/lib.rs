@@ -1,4 +1,4 @@
-//! Contact and time integration.
+//! Contact and time integration of the model.
 
 #![deny(missing_docs)]
 

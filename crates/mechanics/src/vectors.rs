@@ -14,8 +14,7 @@ pub fn dot(p: [f64; 2], q: [f64; 2]) -> f64 {
     p[0] * q[0] + p[1] * q[1]
 }
 
-/// Cross product p x q, the component out of the plane; it is positive if q points to the left of
-/// p.
+/// Cross product p x q, the component out of the plane; the product is positive if q points to the left of p.
 #[inline]
 pub fn cross(p: [f64; 2], q: [f64; 2]) -> f64 {
     p[0] * q[1] - p[1] * q[0]
@@ -71,7 +70,7 @@ pub fn extents(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2] {
     })
 }
 
-/// Number of members up to which a group is not split further.
+/// Number of members up to which a group of the hierarchy is not split further.
 const GROUP: usize = 8;
 /// Relative growth of a distance that covers its round-off.
 const DISTANCE_ROUND_OFF: f64 = 8.0 * f64::EPSILON;
@@ -130,15 +129,15 @@ impl Circle {
     }
 }
 
-/// A binary hierarchy of circles: all members, halves of them, quarters, down to small groups.
+/// A binary hierarchy of circles: all members, halves, quarters, and so on down to small groups.
 ///
 /// Groups are split at the median of the centres along their longer extent, with ties by index, so
 /// the hierarchy depends only on the circles.
 #[derive(Debug, Default)]
 pub struct CircleTree {
-    /// The members with their indices; every group is a range of this list.
+    /// The members with their indices; every group is a range of the list.
     members: Vec<(Circle, u32)>,
-    /// Circle and range of group 1, which is the whole, and of the halves 2k and 2k + 1 of every
+    /// Circle and range of every group: group 1 contains all members, and the groups 2k and 2k + 1 are the halves of
     /// group k.
     groups: Vec<(Circle, [usize; 2])>,
 }
@@ -215,9 +214,9 @@ impl CircleTree {
         values
     }
 
-    /// Visits members approximately in the order of their distance from a point, until all others
-    /// are further away than the limit (length) that the last visit returned. Groups for which
-    /// `is_admitted` is false, by number and circle, are skipped with all their members.
+    /// Visits members approximately in the order of their distance from a point, until all other members are further
+    /// away than the limit (length) that the last visit returned. Groups for which `is_admitted` is false, by number
+    /// and circle, are skipped with all their members.
     pub fn visit_near(
         &self,
         point: [f64; 2],
@@ -253,8 +252,8 @@ impl CircleTree {
         }
     }
 
-    /// Appends all overlapping pairs of a member of this hierarchy and one of the other; two groups
-    /// are compared only when their circles overlap.
+    /// Appends all overlapping pairs of a member of this hierarchy and a member of another hierarchy; two groups are
+    /// compared only when their circles overlap.
     pub fn overlaps(&self, other: &CircleTree, found: &mut Vec<[u32; 2]>) {
         if self.members.is_empty() || other.members.is_empty() {
             return;

@@ -1,6 +1,6 @@
 //! Archive of the values that a run hands on from increment to increment, one after the other and exact to the bit. One
-//! function `transfer` of each structure lists the values of the archive, both to write and to read them, so that the
-//! two orders cannot differ. See docs/restart.md.
+//! function `transfer` of each structure lists the values of the archive, both for writing and for reading, so that the
+//! order of reading cannot differ from the order of writing. See docs/restart.md.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -64,7 +64,7 @@ impl Archive<'_> {
     /// Writes a value, or replaces it by the value that is read.
     ///
     /// # Errors
-    /// The value that is read does not have this type.
+    /// The archive holds a value of another type.
     pub fn transfer<T: Serialize + DeserializeOwned>(
         &mut self,
         value: &mut T,
@@ -85,7 +85,7 @@ impl Archive<'_> {
     /// Writes values, or replaces them by values that are read.
     ///
     /// # Errors
-    /// The values that are read do not have this type or number.
+    /// The archive holds values of another type, or another number of them.
     pub fn transfer_values<T: Serialize + DeserializeOwned + Clone>(
         &mut self,
         values: &mut [T],

@@ -1,4 +1,4 @@
-//! Sparse factorisations and complementarity problems; this package knows nothing of mechanics.
+//! Sparse factorisations and complementarity problems; the package knows nothing of mechanics.
 
 #![deny(missing_docs)]
 

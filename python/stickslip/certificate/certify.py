@@ -51,7 +51,7 @@ class Certificate:
 
     @property
     def holds(self) -> bool:
-        """Whether every check that the file allows holds."""
+        """Whether all checks hold that the file allows."""
         return all(check.holds for check in self.checks)
 
     @property

@@ -1,6 +1,6 @@
-"""A check of the certificate: its worst value against its bound.
+"""A check of the certificate: the worst value of a quantity, compared with its bound.
 
-Values are rounded up and bounds down, and so are the digits that are shown.
+Values are rounded up and bounds down, also in the digits that are shown.
 """
 
 from dataclasses import dataclass, field
@@ -32,12 +32,12 @@ class Check:
 
     @property
     def is_told(self) -> bool:
-        """Whether anything was compared."""
+        """Whether the check has compared any value."""
         return self.count > 0
 
     @property
     def holds(self) -> bool:
-        """Whether no value is above its bound."""
+        """Whether every compared value is at most its bound."""
         return self.value <= self.bound
 
     def add(self, value: ArrayLike, bound: ArrayLike, place: str) -> None:

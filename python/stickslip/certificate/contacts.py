@@ -74,8 +74,8 @@ class Law:
         return float(min(mu, self.limit / pressure) if mu * pressure > self.limit else mu)
 
     def bounds(self, slip: float, noise: float, pressure: float, dt: float) -> tuple[float, float]:
-        """The smallest and the largest coefficient for a slip in an increment that is known up to `noise`; the smallest
-        is 0 if the slip may be noise alone."""
+        """The smallest and the largest coefficient for a slip that is known up to `noise`; the smallest coefficient is
+        0 if the slip may be only noise."""
         slower, faster = (self.at(max(s, 0.0) / dt, pressure) for s in (slip - noise, slip + noise))
         if slip <= noise:
             return 0.0, max(self.at(0.0, pressure), faster)
@@ -118,7 +118,7 @@ class Contact:
 
     @property
     def is_constant(self) -> bool:
-        """Whether friction is the same in all steps and at all slips."""
+        """Whether friction is the same in all steps and at all slip rates."""
         return bool(self.friction[0] == self.friction[1])
 
 
@@ -218,10 +218,10 @@ class Places:
 
 
 def places(x: Array, way: Array, nodes: Integers, contact: Contact) -> Iterator[Places]:
-    """Yields the positions of nodes relative to segments, some nodes at a time; segments that end in a node count as
-    infinitely far from it.
+    """Yields the positions of nodes relative to segments, some nodes at a time; a segment that ends in a node counts as
+    infinitely far from this node.
 
-    `way` [N] holds the distances that nodes have moved in the increment.
+    `way` [N] holds the distances by which nodes have moved in the increment.
     """
     segments = contact.segments
     if len(segments) == 0:
@@ -267,9 +267,9 @@ class Touch:
 def touching(
     x: Array, way: Array, found: list[Contact], nodes: Integers, limit: float
 ) -> tuple[list[Touch], Array, Array, set[int]]:
-    """Returns the slave nodes among `nodes` that are on segments; the smallest distance of each node from a line, and
-    of each slave node from a segment less the way of the increment [N]; and the nodes of corners that other slave nodes
-    meet."""
+    """Returns four results: the slave nodes among `nodes` that are on segments; the smallest distance of each node from
+    a line [N]; the smallest distance of each slave node from a segment, less its way in the increment [N]; and the
+    nodes of corners that other slave nodes meet."""
     nearest = np.full(len(x), np.inf)
     reached = np.full(len(x), np.inf)
     touches = []
@@ -305,11 +305,12 @@ def _at_corner(
 def corner_error(
     x: Array, way: Array, contact: Contact, node: int, gap: float
 ) -> tuple[float, set[int]]:
-    """Distance of a gap from the range that (10.3) allows at the nearest corner, in segment lengths.
+    """Distance of a gap from the range that eq. (10.3) allows at the nearest corner, in segment lengths.
 
-    The node must be in front of neither segment, or in front of one by no more than its way. If the normal lies between
-    those of the segments i and j, the gap lies between g_i and g_j, or reaches up to the distance from the corner if
-    the node is in front of neither segment. The second value holds the nodes of both segments.
+    The node must be in front of neither segment, or in front of one segment by no more than its way in the increment.
+    If the normal lies between the normals of the segments i and j, the gap lies between g_i and g_j, or reaches up to
+    the distance from the corner if the node is in front of neither segment. The second returned value holds the nodes
+    of both segments.
     """
     before, after = contact.segments[:, 1], contact.segments[:, 0]
     corners = np.setdiff1d(np.intersect1d(before, after), [node])
@@ -350,8 +351,8 @@ class Split:
 
 
 def split(x0: Array, x1: Array, force: Array, touch: Touch, halfway: bool) -> Split:
-    """Pn, Pt and Dt of the node; with `halfway`, the force rows have the energy-momentum form, eqs (7.2) and (7.3). On
-    a curved face Pn means the normal force s Pn, and the force rows are those of (3.30)."""
+    """Forces Pn and Pt and slip Dt of the node; with `halfway`, the force rows have the energy-momentum form, eqs (7.2)
+    and (7.3). On a curved face the returned Pn is the normal force s Pn, and eq. (3.30) gives the force rows."""
     a, b = touch.segment
     e0, e1 = x0[b] - x0[a], x1[b] - x1[a]
     r0, r1 = x0[touch.node] - x0[a], x1[touch.node] - x1[a]

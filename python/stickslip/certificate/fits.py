@@ -1,4 +1,4 @@
-"""Steps in which overlaps of fits change: the file does not state the overlap that is left."""
+"""Steps in which overlaps of fits change: in such steps the result file does not state the overlap that is left."""
 
 from stickslip.frame import Frame
 from stickslip.result import Result
@@ -15,7 +15,7 @@ class Fits:
         self.steps, self.last = _steps(result.deck)
 
     def changes(self, frame: Frame) -> bool:
-        """Whether overlaps change in the step of a frame, or may have changed before it."""
+        """Whether overlaps change in the step of a frame, or may have changed in earlier steps."""
         step = self.step(frame)
         return step in self.steps or step >= self.last
 
@@ -26,7 +26,7 @@ class Fits:
 
 
 def _steps(deck: str) -> tuple[set[int], float]:
-    """Steps whose changes of overlaps end with the step, and the first step from which on changes may stay."""
+    """Steps whose changes of overlaps end with the step, and the first step whose changes may persist."""
     step, steps, last = 0, set(), float("inf")
     goes_on = False
     for line in deck.upper().splitlines():

@@ -117,13 +117,13 @@ def _ledger(result: Result, checks: Checks) -> None:
 
 
 def _slip_noise(result: Result) -> float:
-    """Work of the largest contact force over the round-off of positions."""
+    """Work that the largest contact force does over the round-off of positions."""
     force = max((float(contact["normal"].max(initial=0.0)) for contact in result.contact.values()), default=0.0)
     return EPS * force * float(np.abs(result.coordinates).max(initial=0.0))
 
 
 def _contacts(result: Result, checks: Checks) -> None:
-    """Checks that resultants of contacts lie in Coulomb's cone, and the sums of impulses."""
+    """Checks that resultants of contacts lie in Coulomb's cone, and checks the sums of impulses."""
     cone = checks["cone"]
     for name, contact in result.contact.items():
         friction = _friction(result, name)
@@ -155,7 +155,7 @@ def _contacts(result: Result, checks: Checks) -> None:
 
 
 def _bodies(result: Result, check: Check) -> None:
-    """Checks energies of the bodies, or of rigid bodies alone, against those of the model."""
+    """Checks energies of the bodies, or of rigid bodies alone, against the energies of the model."""
     energy, bodies, groups = result.history.energy, result.history.bodies, result.file["history"]
     scale = max(energy.largest, energy.noise / BALANCE)
     if scale == 0.0:
@@ -175,7 +175,7 @@ def _bodies(result: Result, check: Check) -> None:
 
 
 def _body_forces(result: Result, check: Check) -> None:
-    """Checks contact forces on the bodies against those of the contacts."""
+    """Checks contact forces on the bodies against the forces of the contacts."""
     if "contacts" not in result.file["model"]:
         return
     stored = result.history.bodies["contact_force"]
@@ -195,8 +195,8 @@ def _friction(result: Result, contact: str) -> float | None:
 
 
 def _momenta(result: Result, check: Check) -> None:
-    """Checks that the momenta of free bodies change by the impulses of their contacts, and the momentum of all bodies
-    not at all if nothing else acts."""
+    """Checks that the momenta of free bodies change by the impulses of their contacts, and that the momentum of all
+    bodies is constant if nothing else acts."""
     if "contacts" not in result.file["model"]:
         check.skip("the file has no data of the model")
         return
@@ -250,7 +250,7 @@ def _momenta(result: Result, check: Check) -> None:
 
 
 def _shares(result: Result, of_node: Integers, bodies: int, quantity: str) -> tuple[Flags, Array]:
-    """Force or impulse of all contacts on each body [I, B, 2], and whether the file determines it [I, B]."""
+    """Force or impulse of all contacts on each body [I, B, 2], and whether the file determines this value [I, B]."""
     dt = result.history["dt"]
     told = np.ones((len(dt), bodies), np.bool_)
     total = np.zeros((len(dt), bodies, 2))

@@ -78,7 +78,8 @@ class Increments:
 
     @cached_property
     def impelled(self) -> Integers:
-        """Nodes whose velocity and acceleration the impulse (11.12) changes, so that U0 does not follow from these."""
+        """Nodes whose velocity and acceleration the impulse (11.12) changes, so that the start displacement U0 does not
+        follow from these."""
         impelled = np.append(self.has_rigid_parts, False)
         return np.flatnonzero(impelled[self.result.read("model/bodies/node")])
 
@@ -96,7 +97,7 @@ class Increments:
             last = (row, frame["U"])
 
     def _increment(self, frame: Frame, row: int, last: tuple[int, Array] | None) -> Increment:
-        """The increment of a frame; its start follows from the last frame, or from (4.1) and (4.2)."""
+        """The increment of a frame; its start follows from the last frame, or from eqs (4.1) and (4.2)."""
         step = int(self.step[row]) - 1
         scheme, theta = int(self.scheme[step]), self.theta[step]
         dt = float(self.dt[row])

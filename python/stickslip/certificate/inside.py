@@ -84,7 +84,7 @@ def check_penetration(result: Result, contacts: list[Contact], checks: Checks) -
 def _compare(
     x: Array, gap: Array, contact: Contact, found: list[Intrusion], noise: float, check: Check, place: str
 ) -> None:
-    """Compares the depths of slave nodes with the depth that the discretisation of the contact allows: a mean that
+    """Compares the depths of slave nodes with the depth that the discretisation of the contact allows: a mean gap that
     overlaps, eq. (7.9), has the GAP of its node."""
     check.add(0.0, DEPTH + noise, place)
     if not contact.has_means:
@@ -95,7 +95,7 @@ def _compare(
         after[a], before[b] = b, a
 
     def turn(node: int) -> tuple[float, float]:
-        """Angle by which the face turns at a node, and length of the longer edge there."""
+        """Angle by which the face turns at a node, and length of the longer edge at the node."""
         if node not in after or node not in before:
             return 0.0, 0.0
         e, f = x[node] - x[before[node]], x[after[node]] - x[node]
@@ -103,7 +103,8 @@ def _compare(
         return angle if angle < SHARP else 0.0, float(max(np.hypot(*e), np.hypot(*f)))
 
     def along(ends: tuple[int, int], reach: float) -> tuple[float, float]:
-        """Sum of the angles by which the master turns within reach of an edge, and its longest edge there."""
+        """Sum of the angles by which the master turns within reach of an edge, and the longest edge of the master
+        within this reach."""
         total, longest = 0.0, 0.0
         for node, ways in ((ends[1], after), (ends[0], before)):
             gone = 0.0

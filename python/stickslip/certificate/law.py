@@ -206,7 +206,7 @@ class ContactLaw:
     def _mean_cones(
         self, means: Means, closed: list[Mean], frame: Frame, increment: Increment, told: bool
     ) -> None:
-        """Checks the forces of closed means: the nodal forces that they do not explain, the friction cone, and
+        """Checks the forces of closed mean gaps: the nodal forces that these do not explain, the friction cone, and
         slips."""
         forces, is_told, left = means.forces(closed, frame["CONTACT_FORCE"])
         place = f"{means.contact.name}, t = {frame.time:g}"
@@ -281,8 +281,8 @@ class ContactLaw:
         bound: float,
         at: str,
     ) -> None:
-        """Compares the friction of a node or mean with the law at its pressure and its slip, which is known up to a
-        noise."""
+        """Compares the friction of a node or mean gap with the law at its pressure and at its slip, which is known up
+        to a noise."""
         normal, tangential = force
         least, most, law = 0.0, float(contact.friction.max()), None
         if contact.laws and not contact.laws[increment.step].ramps:
@@ -329,8 +329,8 @@ class ContactLaw:
     def _cones(
         self, frame: Frame, increment: Increment, touches: list[Touch], corners: set[int]
     ) -> None:
-        """Checks cone and slip of the nodes that touch exactly one segment and are neither an end of a touched segment
-        nor at a touched corner."""
+        """Checks friction cone and slip of the nodes that touch exactly one segment and are neither an end of a touched
+        segment nor at a touched corner."""
         if increment.start is None and increment.scheme != STATIC:
             return
         x1 = self.result.coordinates + frame["U"]
@@ -369,13 +369,13 @@ class ContactLaw:
 
     @property
     def _edge(self) -> float:
-        """The length that gaps are divided by."""
+        """The length by which gaps are divided."""
         return self.result.edge_length
 
 
 @dataclass
 class AtMaster:
-    """The means that act on a master node."""
+    """The mean gaps that act on a master node."""
 
     weighted: float = 0.0
     """Sum of their gaps by the parts of their normal forces that the node takes."""
@@ -388,13 +388,13 @@ class AtMaster:
 
     @property
     def gap(self) -> float:
-        """The mean gap of these means, eq. (9.16)."""
+        """The average of the mean gaps that act on a master node, eq. (9.16)."""
         return self.weighted / self.whole if self.whole > 0.0 else np.inf
 
 
 def _in_means(contacts: list[Contact]) -> Integers:
-    """Nodes whose forces come partly from means: nodes of surface-to-surface contacts, and masters that such nodes meet
-    as single nodes."""
+    """Nodes whose forces come partly from mean gaps: nodes of surface-to-surface contacts, and masters that such nodes
+    meet as single nodes."""
     of_means = [np.append(one.slaves, one.segments.ravel()) for one in contacts if one.has_means]
     nodes = np.unique(np.concatenate(of_means)) if of_means else np.empty(0, np.int64)
     shared = [one for one in contacts if not one.has_means and np.isin(one.slaves, nodes).any()]
@@ -402,7 +402,7 @@ def _in_means(contacts: list[Contact]) -> Integers:
 
 
 def _elsewhere(contact: Contact, contacts: list[Contact], with_means: set[str]) -> set[int]:
-    """Nodes that are also in contacts with unknown means, or slaves of another contact."""
+    """Nodes that are also in contacts whose mean gaps are unknown, or are slaves of another contact."""
     others = [one for one in contacts if one is not contact]
     nodes = [one.slaves for one in others]
     nodes += [one.segments.ravel() for one in others if one.name not in with_means]
@@ -410,7 +410,7 @@ def _elsewhere(contact: Contact, contacts: list[Contact], with_means: set[str]) 
 
 
 def _at_masters(found: list[tuple[Means, list[Mean]]]) -> dict[int, AtMaster]:
-    """The means that act on each master node."""
+    """The mean gaps that act on each master node."""
     at: dict[int, AtMaster] = {}
     for means, some in found:
         for mean in some:

@@ -114,8 +114,8 @@ def _along_axes(node: int) -> list[Column]:
 
 def _halfway(r: list[Array], e: list[Array]) -> list[tuple[Array, Array]]:
     """Force rows of a unit normal and a unit tangential force at a point and at the end of a segment, eqs (7.2) and
-    (7.3). e is the segment and r the vector from its start to the point, each at the start and the end of an
-    increment."""
+    (7.3). The vector e is the segment, and r leads from the start of the segment to the point; both are given at the
+    start and at the end of an increment."""
     length = [float(np.linalg.norm(one)) for one in e]
     gaps = [_cross(r[k], e[k]) / length[k] for k in (0, 1)]
     mean, arm = (e[0] + e[1]) / 2.0, (r[0] + r[1]) / 2.0
@@ -131,7 +131,7 @@ def _halfway(r: list[Array], e: list[Array]) -> list[tuple[Array, Array]]:
 
 
 class Means:
-    """The means of a contact between two surfaces."""
+    """The mean gaps of a contact between two surfaces."""
 
     def __init__(self, contact: Contact, faces: Integers, x: Array, middles: dict[int, tuple[int, int]], rings: bool) -> None:
         self.contact = contact
@@ -194,7 +194,7 @@ class Means:
 
     def _closed_vertices(self) -> Iterator[list[Column]]:
         """Force rows on the slave of vertices that are closed at the end of the increment, along two directions for
-        each vertex. Vertices touch the straight lines between the nodes."""
+        each vertex. Closed vertices touch the straight lines between the nodes."""
         x, noise = self.at[1][0], 16 * np.finfo(float).eps * np.abs(self.at[1][0]).max()
         for (vertices, (faces, bulges)), is_slave in zip(self.vertices, (True, False), strict=True):
             a = x[faces[:, 0]]
@@ -249,8 +249,8 @@ class Means:
         return (b - a) / np.linalg.norm(b - a, axis=1)[:, None]
 
     def means(self, x0: Array, x1: Array, nodes: Integers, halfway: bool) -> Iterator[Mean]:
-        """The means of some slave nodes between two positions; with `halfway`, the force rows have the energy-momentum
-        form."""
+        """The mean gaps of some slave nodes between two positions; with `halfway`, the force rows have the
+        energy-momentum form."""
         self.at = [(x, *self._ends(self.segments, x), self._tangents(self.segments, x)) for x in (x0, x1)]
         self.halfway = halfway
         points: dict[int, list[Point]] = {}
@@ -282,8 +282,8 @@ class Means:
                 yield mean
 
     def _without_slivers(self, means: list[tuple[float, float, Mean]]) -> list[tuple[float, float, Mean]]:
-        """The means of a node with their covers; means beyond a convex vertex are left out if they cover little
-        compared with the largest."""
+        """The mean gaps of a node with their weights; a mean gap beyond a convex vertex is left out if its weight is
+        small compared with the largest."""
         largest = max((covered for covered, _, _ in means), default=0.0)
         if all(covered >= SLIVER * largest for covered, _, _ in means):
             return means
@@ -315,7 +315,8 @@ class Means:
         return float(np.linalg.norm(b - a) * part * radius)
 
     def _points(self, face: int, halfway: bool) -> Iterator[Point]:
-        """The points of a face: two in each cell; cells end at the bisectors of the start and of the end."""
+        """The points of a face, two in each cell; cells end at the bisectors at the start and at the end of the
+        increment."""
         faced = self._faced(face)
         for run in sorted({int(self.run[i]) for i in faced}):
             own = [i for i in faced if self.run[i] == run]
@@ -332,12 +333,12 @@ class Means:
                     yield self._point(face, eta, weight, i, j, halfway)
 
     def _gauss(self, face: int, segments: set[int]) -> tuple[tuple[float, float], ...]:
-        """Points of a cell, which integrate the gap over it, also for curved faces."""
+        """Points of a cell, which integrate the gap over the cell, also for curved faces."""
         cubics = [self.face_bulges.coefficients[face], *(self.bulges.coefficients[i] for i in segments)]
         return THREE if any(c[3] or (self.rings and c.any()) for c in cubics) else TWO
 
     def _faced(self, face: int) -> list[int]:
-        """Segments that a face is turned to at the start, that are within reach and not behind it."""
+        """Segments that a face faces at the start, and that are within reach and not behind the face."""
         x, a, b, t = self.at[0]
         p, q = (self._place(node, x) for node in self.faces[face])
         e = (q - p) / np.linalg.norm(q - p)
@@ -434,7 +435,7 @@ class Means:
         return Point(face, eta, weight, j, i, gaps[1], slip, rows, on_end, 0.0, stretch, of_chord[1])
 
     def master_parts(self, mean: Mean) -> dict[int, float]:
-        """The parts |Bn_jm| of the normal force of a mean that act on its master nodes, eq. (9.16)."""
+        """The parts |Bn_jm| of the normal force of a mean gap that act on its master nodes, eq. (9.16)."""
         rows: dict[int, Array] = {}
         for weight, q in mean.points:
             on_end = q.on_end + (q.chord_gap - mean.gap) * q.lean
@@ -444,12 +445,12 @@ class Means:
         return {node: float(np.linalg.norm(row)) for node, row in rows.items()}
 
     def forces(self, means: list[Mean], force: Array) -> tuple[Array, Array, float]:
-        """From the nodal forces on the slave, returns normal and tangential forces [J, 2] of the means, whether each is
-        determined [J], and the nodal forces that remain unexplained.
+        """Returns, from the nodal forces on the slave, normal and tangential forces [J, 2] of the mean gaps, whether
+        each force is determined [J], and the nodal forces that remain unexplained.
 
-        Closed vertices of slave and master have forces of their own, in any direction. If these forces and the means do
-        not explain the nodal forces, all corners get forces. Forces of means that would change with the forces of
-        vertices count as not determined.
+        Closed vertices of slave and master have forces of their own, in any direction. If the forces of closed vertices
+        and of mean gaps do not explain the nodal forces, all corners get forces. Forces of mean gaps that would change
+        with the forces of vertices count as not determined.
         """
         rows: dict[tuple[int, int], dict[int, float]] = {}
         own: set[int] = set()
@@ -467,7 +468,7 @@ class Means:
         right = force[nodes].ravel()
 
         def fit(free: list[Column]) -> tuple[Array, Array, float]:
-            """Forces of the means, together with forces of some corners."""
+            """Forces of the mean gaps, together with forces of some corners."""
             count = 2 * len(means)
             matrix = np.zeros((2 * len(nodes), count + len(free)))
             for (node, d), columns in rows.items():
@@ -501,6 +502,6 @@ class Means:
 
 
 def _fit(matrix: Array, right: Array) -> tuple[Array, float]:
-    """The unknowns with the smallest residual, and this residual."""
+    """The solution with the smallest residual, and this residual."""
     found = np.linalg.lstsq(matrix, right, rcond=None)[0]
     return found, float(np.abs(matrix @ found - right).max(initial=0.0))

@@ -23,7 +23,7 @@ class OwnCheck:
 
 
 def own_checks(result: Result) -> list[OwnCheck]:
-    """All checks of this kind in a result."""
+    """All checks in a result that the program has made itself."""
     table = result.history.certificate
     found = []
     for name in table:

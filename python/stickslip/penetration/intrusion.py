@@ -1,15 +1,15 @@
 """Looks for nodes inside bodies and obstacles, in every frame, from the deformed meshes alone.
 
 The contact search of the solver is not used. A body is the region that its outline (the edges that belong to one
-element only) winds around; a node of another outline is inside if the winding number there is positive, which is
-decided with exact signs. A node is compared with every body. In its own body the two edges that meet at the node are
-left out, and the node counts as inside if the body covers its place once more. The depth is the distance to the nearest
-other edge of that body, relative to the length of this edge. Edges that cross are counted as well.
+element only) winds around; a node of another outline is inside if the winding number at its place is positive. Signs
+are exact. A node is compared with every body. For a node in its own body the two edges that meet at the node are left
+out, and the node counts as inside if the body covers its place a second time. The depth of a node is the distance to
+the nearest other edge of the body, relative to the length of this edge. Edges that cross are counted as well.
 
-Rigid surfaces are compared with all bodies, too, with or without a contact in the deck: their corners with the bodies,
-and the nodes of the bodies with the obstacles behind the surfaces (see profiles.py). The depth of such a node is
-relative to the longer edge at the node. Contact keeps the nodes of bodies out of obstacles; corners of a surface that
-is finer than the mesh, or convex, can still lie behind the edge between two nodes.
+Rigid surfaces are also compared with all bodies, with or without a contact in the deck: their corners with the bodies,
+and the nodes of the bodies with the obstacles behind the surfaces (see profiles.py). The depth of a node in an obstacle
+is relative to the longer edge at the node. Contact keeps the nodes of bodies out of obstacles; corners of an obstacle
+that is finer than the mesh, or convex, can still lie behind the edge between two nodes.
 
 The exit code is 1 if a node is deeper than 1e-9 element sizes or if edges cross.
 """
@@ -77,7 +77,7 @@ class Overlap:
 
     @property
     def depth(self) -> float:
-        """Depth of the deepest node or corner, 0 when there is none."""
+        """Depth of the deepest node or corner, 0 if no node or corner is inside."""
         return max((found.depth for found in (self.deepest, self.corner) if found), default=0.0)
 
 
@@ -187,9 +187,9 @@ def crossings(
 ) -> Array:
     """Depths of the edges that cross by more than LIMIT; within one outline each pair counts once.
 
-    The depth is the smallest distance of one of the four ends from the other edge, relative to the length of this edge.
-    Edges with a common vertex do not cross; `vertices` gives the vertex number of each node. For curved edges the side
-    of a point is that of the curve, not of its chord.
+    The depth of a crossing is the smallest distance of one of the four ends from the other edge, relative to the length
+    of this other edge. Edges with a common vertex do not cross; `vertices` gives the vertex number of each node. For
+    curved edges, the curve and not its chord decides on which side a point lies.
     """
     a, b = position[one.nodes], position[one.after]
     c, d = position[two.nodes], position[two.after]
@@ -238,7 +238,7 @@ def _apart(one: tuple[Array, Array], two: tuple[Array, Array]) -> bool:
 
 
 def follow(results: Result) -> list[Overlap]:
-    """The overlap in every frame."""
+    """Outcome of the comparison in every frame."""
     bodies, obstacles = outlines(results), profiles(results)
     found: list[Overlap] = []
     gone: Gone = frozenset()

@@ -1,4 +1,4 @@
-"""Outlines of bodies and the position of points relative to them; signs of areas are exact."""
+"""Outlines of bodies and the position of points relative to outlines; signs of areas are exact."""
 
 from dataclasses import dataclass
 from fractions import Fraction
@@ -51,7 +51,7 @@ def outlines(results: Result) -> list[Outline]:
 
 
 def side(start: Array, end: Array, point: Array) -> Integers:
-    """Sign of the area of the triangles start, end, point: 1 when it turns left; exact."""
+    """Sign of the area of the triangles start, end, point: 1 when the triangle turns left; the sign is exact."""
     one, two = np.broadcast_arrays(
         (start[..., 0] - point[..., 0]) * (end[..., 1] - point[..., 1]),
         (start[..., 1] - point[..., 1]) * (end[..., 0] - point[..., 0]),
@@ -75,8 +75,8 @@ def _exact_side(start: tuple[float, ...], end: tuple[float, ...], at: tuple[floa
 def winding(point: Array, start: Array, end: Array, counted: Flags) -> Integers:
     """Winding number of edges around points, from the crossings of a ray to the right of each point.
 
-    `counted` [points, edges] says which edges count for each point. For a point on an edge it is the winding number of
-    either side.
+    `counted` [points, edges] says which edges count for each point. For a point on an edge, the result is the winding
+    number of either side.
     """
     y, low, high = point[:, None, 1], start[None, :, 1], end[None, :, 1]
     up, down = (low <= y) & (y < high), (high <= y) & (y < low)
@@ -92,7 +92,7 @@ def winding(point: Array, start: Array, end: Array, counted: Flags) -> Integers:
 def ray_starts_inside(point: Array, before: Array, after: Array) -> Flags:
     """Whether the ray to the right of a node of an outline starts inside the body.
 
-    The ray lies infinitesimally above the node: its direction is (1, 0+).
+    The ray is turned infinitesimally upwards: its direction is (1, 0+).
     """
     one, two = after - point, before - point
 
@@ -107,7 +107,7 @@ def ray_starts_inside(point: Array, before: Array, after: Array) -> Flags:
 
 
 def distances(point: Array, start: Array, end: Array, bulges: Bulges | None = None) -> Array:
-    """Distances of points from edges [points, edges]; from curved edges across their chords."""
+    """Distances of points from edges [points, edges]; distances from curved edges are measured across the chords."""
     along = end - start
     offset = point[:, None] - start
     length = np.einsum("ei,ei->e", along, along)
@@ -120,8 +120,8 @@ def distances(point: Array, start: Array, end: Array, bulges: Bulges | None = No
 
 
 def between_chord_and_curve(point: Array, start: Array, end: Array, bulges: Bulges) -> Integers:
-    """Winding number of curved edges around points minus that of their chords [points, edges]: 1 for a point between a
-    chord and a curve outside of it, -1 for a point between a chord and a curve inside of it."""
+    """Winding number of curved edges around points minus the winding number of their chords [points, edges]. The result
+    is 1 for a point between a chord and a curve outside of it, and -1 if the curve is inside."""
     if not bulges.coefficients.any():
         return np.zeros((len(point), len(start)), np.int64)
     gap, height, over = _across(point, start, end, bulges)
@@ -144,7 +144,7 @@ def closed_hollow(point: Array, before: Array, after: Array) -> Array:
     """Overlap of the legs of closed concave corners; infinite at other nodes.
 
     At a concave corner whose legs lie on each other, the angle is zero up to round-off. If round-off makes the angle
-    negative, the node itself is covered once more, although it is far from all other edges.
+    negative, the body covers the node itself a second time, although the node is far from all other edges.
     """
     one, two = before - point, after - point
     lengths = np.linalg.norm(one, axis=1), np.linalg.norm(two, axis=1)

@@ -2,9 +2,9 @@
 
 A profile is a chain of segments with the obstacle on the left of the direction from a to b. A closed profile is the
 boundary of a region, and winding numbers tell inside from outside. An open profile bounds no region. A node is inside
-if it lies on the left of the nearest place of the profile, and if the outline of its body crosses the profile to get
-there or the whole body has passed through it since the last frame. A node that has come around the ends of an open
-profile is not inside.
+if it lies on the left of the nearest place of the profile, and if the outline of its body crosses the profile to reach
+the node, or the whole body has passed through the profile since the last frame. A node that has come around the ends of
+an open profile is not inside.
 """
 
 from dataclasses import dataclass
@@ -70,8 +70,8 @@ def crossings(start: Array, end: Array, first: Array, second: Array) -> Integers
     """Number of times that paths from `start` to `end` [n, 2] cross the segments from `first` to `second`, towards
     their left.
 
-    A crossing in the other direction counts -1. A point that is on the left of a segment by less than LIMIT times the
-    path touches it and counts as in front of it.
+    A crossing in the other direction (from left to right) counts -1. A point that is on the left of a segment by less
+    than LIMIT times the path touches the segment, and counts as in front of the segment.
     """
     low = (np.minimum(start, end)[:, None] <= np.maximum(first, second)[None]).all(axis=2)
     high = (np.maximum(start, end)[:, None] >= np.minimum(first, second)[None]).all(axis=2)
@@ -93,7 +93,7 @@ def height(first: Array, second: Array, point: Array) -> Array:
 
 
 def nearest(position: Array, nodes: Integers, profile: Profile) -> tuple[Array, Integers, Flags]:
-    """Distance of nodes from a profile, the nearest segment, and whether they are on its left."""
+    """Distance of nodes from a profile, the nearest segment, and whether the nodes are on the left of this segment."""
     point, first, second = position[nodes], position[profile.nodes], position[profile.after]
     distance = distances(point, first, second)
     segment = distance.argmin(axis=1) if len(nodes) else np.empty(0, np.int64)
@@ -123,7 +123,7 @@ def passed(before: Array, after: Array, body: Outline, profile: Profile) -> bool
 
 
 def sunk(position: Array, body: Outline, profile: Profile) -> Flags:
-    """Nodes of the outline of a body that are inside the obstacle, as far as a single frame shows."""
+    """Nodes of the outline of a body that are inside the obstacle, as far as one frame can show."""
     first, second = position[profile.nodes], position[profile.after]
     start, end = position[body.nodes], position[body.after]
     if profile.closed:

@@ -1,9 +1,9 @@
 """Draws a field at the nodes along a line, at some times: the contact pressure along a surface.
 
-The nodes are those of a node set (--nset), or else all slave nodes. The nodes are joined along the outlines of the
-bodies. If the nodes form several lines, each line has axes of its own; lines on which the field is zero at all shown
-times are left out. The abscissa is the length along the line in the undeformed mesh, or with --against the current x or
-y (r, z). Without -o the picture is written next to the result, as JOB_along.png.
+The nodes belong to a node set (--nset), or else are all slave nodes. The curve joins the nodes along the outlines of
+the bodies. If the nodes form several lines, each line has axes of its own; lines on which the field is zero at all
+shown times are left out. The abscissa is the length along the line in the undeformed mesh, or, with --against, the
+current x or y (r or z in bodies of revolution). Without -o the picture is written next to the result, as JOB_along.png.
 """
 
 import argparse
@@ -42,7 +42,7 @@ def chains(results: Result, nodes: Integers) -> list[Integers]:
 
 
 def abscissa(results: Result, line: Integers, frame: int, against: str) -> Array:
-    """Length along the line in the undeformed mesh, or the current x or y (r or z)."""
+    """Length along the line in the undeformed mesh, or the current x or y (r or z in bodies of revolution)."""
     if against != "length":
         return results.frames[frame].positions[line, "xyrz".index(against) % 2]
     steps = np.linalg.norm(np.diff(results.coordinates[line], axis=0), axis=1)

@@ -23,7 +23,7 @@ COLOURS: Colormap = colormaps["viridis"].resampled(BANDS)
 
 @dataclass(frozen=True)
 class Field:
-    """A number for drawing: at the places of nodes, for each element, or at nodes along the outlines."""
+    """A number that is drawn: at the places of nodes, for each element, or at nodes along the outlines."""
 
     name: str
     """Name with a component, as `fields` takes them."""
@@ -31,7 +31,7 @@ class Field:
     """Whether values of elements are averaged at nodes."""
 
     def values(self, results: Result, frame: int) -> Array:
-        """Values in a frame, at places [P] or of elements [E]; NaN where there is no value."""
+        """Values in a frame, at places [P] or of elements [E]; NaN at places and elements without a value."""
         shown, spelled = results.frames[frame], results.frames.known(self.name)
         field = spelled.partition(":")[0]
         rows = shown.at_places(field) if self.of_nodes(results) else shown[field]
@@ -72,7 +72,7 @@ class Peak:
 
     @classmethod
     def of(cls, field: Field, shown: Sequence[Shown]) -> "Peak | None":
-        """None if the field is zero."""
+        """The result is None if the field is zero."""
         found: Peak | None = None
         for results, frame in shown:
             values = np.nan_to_num(field.values(results, frame))
@@ -97,8 +97,9 @@ class Colouring:
     def of(cls, field: Field, shown: Sequence[Shown], ends: tuple[float, float] | None = None) -> "Colouring":
         """A scale that contains 0 and the field in the given frames, or a scale with the given ends.
 
-        Frames with values far above those of the others do not determine its ends, because they would make all others
-        dark. Values beyond an end have the colour of the end, and the label gives the largest one.
+        Frames with values far above the values of other frames do not determine the ends of the scale, because they
+        would make all other frames dark. Values beyond an end of the scale have the colour of the end, and the label
+        gives the largest value.
         """
         finite = [values[np.isfinite(values)] for values in (field.values(*each) for each in shown)]
         least = np.array([min(0.0, float(values.min(initial=0.0))) for values in finite])
@@ -126,7 +127,7 @@ PEAK = 3.0
 
 
 def usual(largest: Array) -> float:
-    """The largest value of all frames [frames], without frames that are peaks."""
+    """The largest value of all frames [frames], without frames whose values are far above the others."""
     values = np.sort(largest[largest > 0.0])
     if len(values) == 0:
         return 0.0

@@ -1,9 +1,9 @@
 """Draws the histories of results.
 
 Without names the command draws the energy accounts, the energy balance, momentum and contact forces, and force against
-displacement if a force moves something; results stand side by side or, with --overlay, on top of each other. With --y
-the command draws any histories, against the time or against the history of --x. All results are then in the same axes,
-and every --y has axes of its own:
+displacement if a force moves something. Results stand side by side or, with --overlay, on top of each other. With --y
+the command draws any histories, against the time or against the history of --x. With --y all results are drawn in the
+same axes, and every --y has axes of its own:
 
     stickslip plot history A.vtkhdf B.vtkhdf --x nodes/TIP/U:2 --y contact/A_B/force:1
 
@@ -58,7 +58,7 @@ Plot = Callable[[Axes, Result], None]
 
 
 def energy(axes: Axes, results: Result) -> None:
-    """The energy accounts, stacked, with negative accounts below zero, and the energy put in."""
+    """Draws the energies of the ledger, stacked, with negative energies below zero, and the energy put in."""
     account = results.history.energy
     start = account["kinetic"][0] + account["strain"][0]
     coloured = zip(LEDGER, style.ACCOUNTS)
@@ -79,7 +79,7 @@ def relative_balance(results: Result) -> Array:
 
 
 def balance(axes: Axes, results: Result) -> None:
-    """The relative energy balance."""
+    """Draws the relative energy balance."""
     axes.semilogy(
         results.history.time, np.maximum(relative_balance(results), LEAST), color="k", lw=0.7
     )
@@ -87,7 +87,7 @@ def balance(axes: Axes, results: Result) -> None:
 
 
 def linear_momentum(axes: Axes, results: Result) -> None:
-    """Both components of the momentum; round-off is drawn as zero."""
+    """Draws both components of the momentum; round-off is drawn as zero."""
     for label, values in zip(directions(2, results.is_axisymmetric), results.history.momentum.linear.T):
         axes.plot(results.history.time, values, label=label)
     speed = np.linalg.norm(results.frames[0]["V"], axis=1).max()
@@ -97,7 +97,7 @@ def linear_momentum(axes: Axes, results: Result) -> None:
 
 
 def angular_momentum(axes: Axes, results: Result) -> None:
-    """Angular momentum; round-off is drawn as zero."""
+    """Draws the angular momentum; round-off is drawn as zero."""
     axes.plot(results.history.time, results.history.momentum.angular, color="k")
     flat(
         axes,
@@ -118,7 +118,7 @@ def flat(axes: Axes, change: float, scale: float) -> None:
 
 
 def contact_force(axes: Axes, results: Result) -> None:
-    """Normal and tangential resultant of each contact."""
+    """Draws the normal and the tangential resultant of each contact."""
     axes.set_prop_cycle(color=style.colours(max(2 * len(results.contact), 2)))
     for contact in results.contact.values():
         prefix = f"{contact.name}: " if len(results.contact) > 1 else ""
@@ -128,7 +128,7 @@ def contact_force(axes: Axes, results: Result) -> None:
 
 
 def contact_state(axes: Axes, results: Result) -> None:
-    """Number of closed and of sticking pairs."""
+    """Draws the numbers of closed and of sticking pairs."""
     axes.set_prop_cycle(color=style.colours(max(2 * len(results.contact), 2)))
     for contact in results.contact.values():
         prefix = f"{contact.name}: " if len(results.contact) > 1 else ""
@@ -140,7 +140,7 @@ def contact_state(axes: Axes, results: Result) -> None:
 
 
 def legend_beside(axes: Sequence[Axes]) -> None:
-    """One legend on the right of a row of axes for all lines in them; equal labels appear once."""
+    """One legend on the right of a row of axes for all lines in these axes; equal labels appear once."""
     entries: dict[str, Any] = {}
     for each in axes:
         handles, labels = each.get_legend_handles_labels()
@@ -154,7 +154,7 @@ def legend_beside(axes: Sequence[Axes]) -> None:
 
 @style.styled
 def draw(all_results: list[Result]) -> Figure:
-    """A page with one column per result, all with the same scales."""
+    """A page with one column per result; all columns have the same scales."""
     rows: list[tuple[Plot, float]] = [(energy, 2.0), (balance, 1.0)]
     if any(results.history.momentum.linear.any() for results in all_results):
         rows += [(linear_momentum, 1.0), (angular_momentum, 1.0)]
@@ -224,7 +224,7 @@ COMPARED: tuple[tuple[str, Callable[[Result], Array]], ...] = (
 
 @style.styled
 def compare(all_results: list[Result]) -> Figure:
-    """A page with the results on top of each other, one line for each."""
+    """A page with the results on top of each other, with one line for each result."""
     touching = any(results.contact for results in all_results)
     rows = COMPARED if touching else COMPARED[:5]
     figure, axes = style.subplots(len(rows), 1, (9.0, 1.0 + 1.6 * len(rows)), sharex=True)
@@ -243,7 +243,7 @@ def compare(all_results: list[Result]) -> Figure:
 
 @style.styled
 def draw_named(all_results: list[Result], along: str, rows: list[list[str]]) -> Figure:
-    """A page of histories against another one, with axes for each row of names and a line for each name."""
+    """A page of histories against another history, with axes for each row of names and a line for each name."""
     figure, axes = style.subplots(
         len(rows), 1, (9.0, 0.8 + 3.4 * len(rows)), sharex=True, squeeze=False
     )

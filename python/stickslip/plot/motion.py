@@ -1,9 +1,9 @@
 """Draws the motion of results: deformed shapes at chosen times, or an animation.
 
 Each time has its own panel, or, with --overlay, all times of a result share one panel. Several results are arranged
-below each other, with the same limits and the same colours. Slave nodes in contact are marked: with filled marks if
-they stick, hollow ones if they slide. Without -o the picture is written next to the first result, as JOB_motion.png;
---animation alone writes no picture.
+below each other, with the same limits and the same colours. Slave nodes in contact have filled marks if they stick, and
+hollow marks if they slide. Without -o the picture is written next to the first result, as JOB_motion.png; --animation
+alone writes no picture.
 """
 
 import argparse
@@ -93,7 +93,7 @@ def panels(rows: Sequence[Sequence[Shown]], look: Look, columns: int | None = No
     """A page with a panel for each frame.
 
     Panels of a single row are arranged so that they fill the page best, or in `columns`; if there are several rows,
-    each begins a new line of panels.
+    each row begins a new line of panels.
     """
     shown = [each for row in rows for each in row]
     if len(shown) > MOST:
@@ -152,7 +152,7 @@ def overlay(rows: Sequence[Sequence[Shown]], window: Box | None = None) -> Figur
 
 
 def check_film(path: Path) -> None:
-    """Raises a Fault if no animation with this name can be written."""
+    """Raises a Fault if no animation with the given file name can be written."""
     if path.suffix == ".gif":
         return
     if path.suffix not in FILMS:
@@ -217,7 +217,7 @@ def pictures_of(
 
 @style.styled
 def animate(all_results: Sequence[Result], look: Look, path: Path, frames_per_second: int) -> None:
-    """Writes an animation of all frames of the first result; others are shown at its times."""
+    """Writes an animation of all frames of the first result; other results are shown at the times of these frames."""
     times = all_results[0].frames.times
     rows = [[(each, each.frames.nearest(time).index) for each in all_results] for time in times]
     scene = Scene([each for row in rows for each in row], look)
@@ -236,8 +236,8 @@ PANELS = 6
 def chosen_times(results: Result, times: list[float] | None, interval: float | None, field: Field | None = None) -> Array:
     """The given times, or multiples of an interval, or times that represent the whole run.
 
-    The representative times are the start, the ends of the steps and the time of the largest value of the field; more
-    times between them are added up to six.
+    The representative times are the start, the ends of the steps and the time of the largest value of the field.
+    Further times between the representative times are added, up to six times in all.
     """
     if times:
         return np.array(times)
@@ -259,7 +259,7 @@ def chosen_times(results: Result, times: list[float] | None, interval: float | N
 
 
 def step_ends(results: Result) -> list[int]:
-    """Frames at the ends of the steps; for more than ten steps, at some of them."""
+    """Frames at the ends of the steps; for more than ten steps, at the ends of some steps."""
     step, time = results.history["step"], results.history["time"]
     last = np.flatnonzero(np.diff(step, append=step[-1] + 1))
     chosen = last[:: -max(1, -(-len(last) // 10))]

@@ -1,4 +1,4 @@
-"""Pages of panels that fill the paper: all panels show the same box, and legends stand beside them."""
+"""Pages of panels that fill the paper: all panels show the same box, and legends stand beside the panels."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -71,7 +71,7 @@ class Grid:
         )
 
     def corner(self, row: int, column: int) -> tuple[float, float]:
-        """Lower left corner of a panel, relative to that of the first panel in the last row."""
+        """Lower left corner of a panel, relative to the lower left corner of the first panel in the last row."""
         above = self.rows - 1 - row
         return column * (self.width + COLUMN_GAP), above * (self.height + TITLE + ROW_GAP)
 
@@ -99,25 +99,25 @@ class Legends:
 
     @property
     def width(self) -> float:
-        """Space that entries and colour bar need beside the panels."""
+        """Space that legend entries and colour bar need beside the panels."""
         bar = BAR if self.norm is not None else 0.0
         return max(bar, self.column if self.entries else 0.0)
 
     @property
     def column(self) -> float:
-        """Width of a column of entries."""
+        """Width of a column of legend entries."""
         return 0.45 + CHARACTER * max(map(len, self.lines))
 
     @property
     def columns(self) -> int:
-        """Columns of entries below the panels, beside a colour bar if there is one."""
+        """Number of columns of entries below the panels, beside the colour bar if there is one."""
         if self.norm is not None:
             return -(-len(self.lines) // 3)
         return max(1, min(len(self.entries), int((WIDTH - 1.0) / self.column)))
 
     @property
     def height(self) -> float:
-        """Space that entries and colour bar need below the panels."""
+        """Space that legend entries and colour bar need below the panels."""
         if self.norm is not None or not self.entries:
             return LOW_BAR if self else 0.0
         return 0.1 + LINE * -(-len(self.lines) // self.columns)
@@ -143,7 +143,8 @@ class Page:
         legends: Legends,
         titles: Sequence[str] = ("x", "y"),
     ) -> None:
-        """`places` is the number of panels, or of rows and columns; `titles` holds the titles of the axes."""
+        """`places` is the number of panels, or the numbers of rows and columns; `titles` holds the titles of the
+        axes."""
         self.box = box
         self.titles = titles
         across, up = box[1] - box[0]
@@ -171,7 +172,7 @@ class Page:
             self._below(legends)
 
     def panel(self, row: int, column: int, last: bool = True) -> Axes:
-        """Axes of a panel; `last` says that no panel stands below it."""
+        """Axes of a panel; `last` says that no other panel stands below this panel."""
         x, y = self.grid.corner(row, column)
         axes = self._axes(self.left + x, self.bottom + y, self.grid.width, self.grid.height)
         self.frame(axes)
@@ -193,7 +194,7 @@ class Page:
         return self.figure.add_axes(tuple(np.array((x, y, width, height)) / size))
 
     def _beside(self, legends: Legends, left: float) -> None:
-        """Draws the entries, and the colour bar below them."""
+        """Draws the legend entries, and the colour bar below these."""
         top = self.height - TOP - TITLE
         if legends.entries:
             self._list(legends.entries, (left / self.width, top / self.height), 1)
@@ -208,7 +209,7 @@ class Page:
             )
 
     def _below(self, legends: Legends) -> None:
-        """Draws the colour bar, and the entries on the right of it."""
+        """Draws the colour bar, and the legend entries to the right of the bar."""
         left = self.left
         if legends.norm is not None:
             axes = self._axes(left, 0.4, 0.55 * self.width, 0.15)
@@ -224,7 +225,7 @@ class Page:
         self._list(legends.entries, (left / self.width, top / self.height), legends.columns)
 
     def _list(self, entries: Sequence[Artist], place: tuple[float, float], columns: int) -> None:
-        """Draws entries with their upper left corner at a place."""
+        """Draws legend entries with their upper left corner at a place."""
         if entries:
             self.figure.legend(
                 handles=entries,

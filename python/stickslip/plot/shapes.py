@@ -122,7 +122,8 @@ def draw_shape(
 def draw_field(
     axes: Axes, results: Result, frame: int, colouring: Colouring, at: Array, bodies: PolyCollection
 ) -> None:
-    """Draws the field in its colours, and a mark where it is largest; `at` holds the positions of the vertices."""
+    """Draws the field in its colours, and a mark where the field is largest; `at` holds the positions of the
+    vertices."""
     drawing, field = results.drawing, colouring.field
     values = field.values(results, frame)
     look: dict[str, Any] = {"cmap": COLOURS, "norm": colouring.norm}
@@ -151,10 +152,10 @@ def draw_field(
 
 
 def mesh_line(axes: Axes, results: Result) -> float:
-    """Width of the lines of the mesh in points: at most a thirtieth of an edge; if this is too thin, there are no
-    lines.
+    """Width of the lines of the mesh in points: at most a thirtieth of an edge; if such lines are too thin, no lines
+    are drawn.
 
-    Thicker lines of a fine mesh would hide the colours of its elements.
+    Thicker lines in a fine mesh would hide the colours of the elements.
     """
     left, right = axes.get_xlim()
     figure = cast(Figure, axes.figure)
@@ -179,8 +180,8 @@ def status_legend(shown: Sequence[Shown]) -> list[Artist]:
 
 
 def limits(shown: Sequence[Shown], arrows: Arrows | None = None) -> tuple[Array, Array]:
-    """Lower left and upper right corner of the box that holds the deformable bodies, or all without them, with a
-    margin.
+    """Lower left and upper right corner of the box that holds the deformable bodies (all surfaces if there are no such
+    bodies), with a margin.
 
     The box includes corners of rigid surfaces that are at most AROUND times the size of the box away.
     """

@@ -22,7 +22,8 @@ ACCOUNTS = (*COLOURS[:4], "#9acd32", "#c38d5a", "#222222", *COLOURS[4:])
 
 
 def colours(count: int) -> list[str]:
-    """`count` different colours: those of the figures, or colours of a colour map if more are needed."""
+    """`count` different colours: the standard colours of figures, or colours of a colour map if more colours are
+    needed."""
     if count <= len(COLOURS):
         return list(COLOURS[:count])
     return [

@@ -1,6 +1,6 @@
 """The report page of a result: one HTML file that works offline (docs/report.md).
 
-`stickslip report RESULT.vtkhdf` writes this page.
+`stickslip report RESULT.vtkhdf` writes the report page of a result.
 """
 
 from stickslip.report.collect import Choice

@@ -31,7 +31,7 @@ CERTIFIED = 4_000_000
 
 @dataclass(frozen=True)
 class Choice:
-    """Choice of the data of a result that go into the page."""
+    """Choice of the data of a result that the page contains."""
 
     fields: tuple[str, ...] | None = None
     """Names of the fields of the frames; None for all."""
@@ -66,7 +66,7 @@ def collect(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
 
 
 def collect_outline(path: Path, packed: Packed, choice: Choice) -> dict[str, Any]:
-    """Data of a result that is laid over another one: outlines in motion, pressure along surfaces, histories."""
+    """Data of a result that is laid over another result: outlines in motion, pressure along surfaces, histories."""
     with Result(path) as result:
         frames = _chosen(len(result.frames), choice.frames)
         drawing = result.drawing
@@ -133,7 +133,7 @@ def _plain(value: Any) -> Any:
 
 
 def _heading(deck: str) -> str:
-    """The lines under *HEADING."""
+    """The lines under *HEADING in the deck."""
     lines = deck.splitlines()
     for number, line in enumerate(lines):
         if line.strip().upper().replace(" ", "").startswith("*HEADING"):
@@ -147,7 +147,7 @@ def _heading(deck: str) -> str:
 
 
 def _chosen(frames: int, most: int | None) -> Integers:
-    """Indices of at most `most` frames, evenly chosen; the first and the last frame are among them."""
+    """Indices of at most `most` frames, evenly chosen; these include the first and the last frame."""
     if most is None or frames <= most:
         return np.arange(frames)
     return np.unique(np.rint(np.linspace(0, frames - 1, max(most, 2))).astype(np.int64))
@@ -277,7 +277,7 @@ def _contact_nodes(result: Result) -> Integers:
 def _surfaces(result: Result) -> list[dict[str, Any]]:
     """Chains of edges between slave nodes: name, nodes and reference arc length.
 
-    A closed chain begins where there is no pressure, so the part under pressure is in one piece.
+    A closed chain of edges begins where no pressure acts, so the part under pressure is in one piece.
     """
     slave = np.zeros(len(result.coordinates), dtype=bool)
     most = np.zeros(len(result.coordinates))
@@ -369,7 +369,8 @@ def _histories(result: Result, packed: Packed) -> dict[str, Any]:
 
 
 def _pairs(result: Result, packed: Packed) -> list[dict[str, Any]]:
-    """Forces against displacements: the object that moves, titles, and time, displacement and force [rows, 3]."""
+    """Forces against displacements: for each the object that moves, the titles, and time, displacement and force [rows,
+    3]."""
     rows = np.unique(np.linspace(0, result.rows - 1, min(result.rows, MOST_ROWS)).astype(np.int64))
     pairs = []
     for names in force_against_displacement(result):
@@ -394,7 +395,8 @@ def _columns(each: Members, shape: tuple[int, ...], axisymmetric: bool) -> list[
 
 
 def _thinned(values: Array, parts: Integers | None) -> Array:
-    """The smallest and the largest value of each section of the rows, in the order of the rows."""
+    """The smallest and the largest value of each section of the rows, whichever comes first in the section standing
+    first."""
     if parts is None:
         return values
     rows = []
@@ -409,7 +411,7 @@ def _thinned(values: Array, parts: Integers | None) -> Array:
 
 
 def _checks(result: Result) -> list[dict[str, Any]]:
-    """The largest value of every check of the increments, and the increment where it occurs."""
+    """The largest value of every check of the increments, and the increment in which this value occurs."""
     time = result.history["time"]
     found = []
     for check in own_checks(result):
@@ -430,7 +432,7 @@ def _checks(result: Result) -> list[dict[str, Any]]:
 
 
 def _certificate(result: Result) -> str:
-    """The line of the certificate, or the reason why there is none."""
+    """The line of the certificate, or the reason why there is no certificate."""
     if len(result.cells) * len(result.frames) > CERTIFIED:
         return "not made for a page of this size: stickslip certify makes it"
     try:

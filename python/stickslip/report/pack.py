@@ -1,12 +1,13 @@
 """Arrays as short text for a page.
 
-An array is mapped to whole numbers q, whose differences from row to row are small. The bytes of these differences are
-sorted by significance, deflated and written in base64; `page/decode.js` reverses all this. Three maps lead from values
-to whole numbers:
+The values v of an array are mapped to whole numbers q, whose differences from row to row are small. The bytes of the
+differences are sorted by significance, deflated and written in base64; `page/decode.js` reverses these three
+operations. Three maps lead from values to whole numbers:
 
-* `linear`: v = step q; the error is at most step/2;
-* `curved`: v = small sinh(fine q); the error is about fine/2 times the value, or times `small` if this is larger;
-* `bits`: q is the bit pattern of v as a float32.
+* `linear`: the value is v = step q; the error is at most step/2;
+* `curved`: the value is v = small sinh(fine q); the error is about fine/2 times the value, or times `small` if `small`
+  is larger;
+* `bits`: q is the bit pattern of the value v as a float32.
 """
 
 import base64
@@ -86,7 +87,8 @@ class Packed:
 
 
 def _shortest(whole: NDArray[np.int32]) -> tuple[int, NDArray[np.int32]]:
-    """The order of differences that needs the fewest bits, and the differences; sums wrap around at 2^32."""
+    """The order of differences that needs the fewest bits, and the differences; sums of differences wrap around at
+    2^32."""
     candidates = [whole]
     for _ in ORDERS[1:]:
         previous = candidates[-1]

@@ -32,7 +32,7 @@ SCRIPTS = (
 
 
 def page_of(paths: Sequence[Path], choice: Choice = Choice()) -> str:
-    """The page of a result, with a second one laid over it if two paths are given."""
+    """The page of a result; if two paths are given, the second result is laid over the first."""
     packed = Packed()
     first, *others = paths
     results = [

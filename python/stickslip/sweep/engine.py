@@ -62,8 +62,8 @@ def sweep(
 ) -> Table:
     """Runs a deck at some points (values of its parameters by name) and returns the table of the study.
 
-    `output` is a folder that all workers can access. Points that have already ended in this folder are not run again. A
-    point that fails has a row with its message.
+    `output` is a folder that all workers can access. Points that have already ended in the folder `output` are not run
+    again. A point that fails has a row with its error message.
     """
     chosen = [Quantity.parse(text) for text in dict.fromkeys(quantities)]
     if not points:
@@ -117,8 +117,8 @@ def _tasks(
 
 
 def _check_quantities(chosen: Sequence[Quantity], studies: Sequence[tuple[Task, Deck]]) -> None:
-    """Raises a Fault if the first point with a result lacks a history. If no point has a result, points are run up to
-    their first frame."""
+    """Raises a Fault if the first point with a result lacks a history. If no point has a result yet, points are run up
+    to their first frame."""
     for task, own in studies:
         has_result = task.has_ended and task.result.exists()
         with Result(task.result) if has_result else first_frame(own, task.given) as result:
@@ -141,10 +141,10 @@ def _check_names(template: Deck, values: Point) -> None:
 
 
 class Runs(Protocol):
-    """Base class of the places where points run."""
+    """Base class of the places (this machine or a cluster) where points run."""
 
     def submit(self, task: Task) -> Any:
-        """Begins a run; the returned object has the `exception` with which the run ended."""
+        """Begins a run; the returned object has the `exception` with which the run has ended."""
 
     def ended(self, futures: Iterable[Any]) -> Iterator[Any]:
         """The submitted runs, in the order in which they end."""
@@ -219,7 +219,8 @@ def _cluster(scheduler: str) -> "Iterator[Client]":
 
 
 def _run_all(runs: Runs, tasks: Sequence[Task], settings: Settings) -> dict[str, str]:
-    """Runs the tasks. Returns, by name, the reason for each task that has no row."""
+    """Runs the tasks of a study. Returns, by the names of the points, the reason for each task without a row in the
+    table."""
     start = time.monotonic()
     futures: dict[Any, Task] = {runs.submit(task): task for task in tasks}
     lost = {}

@@ -45,7 +45,8 @@ def draw_all(table: Table, folder: Path | str, colour: str | None = None) -> Ite
 
 
 def histories(table: Table, quantity: Quantity, by: str) -> Figure | None:
-    """A picture of a history of all points against the time, coloured by a parameter; None if no point has it."""
+    """A picture of a history of all points against the time, coloured by a parameter; None if no point has this
+    history."""
     figure, axes = _axes("time", quantity.history)
     values = table.column(by)
     for row, colour in zip(table.rows, _colours(values)):
@@ -69,9 +70,9 @@ def against(
     table: Table, quantity: Quantity, name: str, others: Sequence[str], by: str
 ) -> Figure | None:
     """A picture of a number against a parameter, with one line for each combination of the other parameters, coloured
-    by one of them.
+    by one of these parameters.
 
-    Points that do not lie on a lattice are not joined by lines. The picture is None if no point has the number.
+    Points that do not lie on a lattice are not joined by lines. The result is None if no point has the number.
     """
     if np.isnan(table.column(str(quantity))).all():
         return None
@@ -105,7 +106,7 @@ def _axes(across: str, up: str) -> tuple[Figure, Axes]:
 
 
 def _legend(axes: Axes, by: str, values: list[Any]) -> None:
-    """A legend beside the axes if it is short; else the scale of the colours, if they represent numbers."""
+    """A legend beside the axes, if the legend is short; else the scale of the colours, if they represent numbers."""
     if 1 < len(axes.lines) <= MOST:
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
     elif len(axes.lines) > MOST and not any(isinstance(value, str) for value in values):

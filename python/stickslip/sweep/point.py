@@ -1,7 +1,7 @@
 """One point of a study, as a worker of the cluster runs it.
 
 A point has a folder whose name gives its values. A run has its own folder, which gets the name of the point when the
-run has ended, so files of a killed worker are never mistaken for a result.
+run has ended. So files of a killed worker are never mistaken for a result.
 """
 
 import glob
@@ -60,7 +60,7 @@ class Task:
 
     @property
     def result(self) -> Path:
-        """The result file, if there is one."""
+        """The result file of the point, if it exists."""
         return self.folder / self.relative_result
 
     @property
@@ -69,8 +69,8 @@ class Task:
         return f"points/{self.name}/{self.name}.vtkhdf"
 
     def row(self) -> dict[str, Any] | None:
-        """The row of a point that has ended. The row of another deck, other options or another program does not
-        count."""
+        """The row of a point that has ended. A row that comes from another deck, other options or another program does
+        not count."""
         try:
             row = json.loads((self.place / ROW).read_text())
         except (OSError, ValueError):
@@ -151,13 +151,13 @@ def _said(command: list[str]) -> tuple[int, str]:
 
 
 def stop_runs() -> None:
-    """Ends all runs of this process in order, so each writes its last good state."""
+    """Ends all runs of this process in order, so that each run writes its last good state."""
     for process in list(RUNNING):
         process.terminate()
 
 
 def _bounded(command: list[str], memory: int | None) -> list[str]:
-    """The command with bounded memory; on Linux it also ends when the worker is killed."""
+    """The command with a limit of its memory; on Linux the command also ends when the worker is killed."""
     if memory is not None:
         command = ["sh", "-c", 'ulimit -v "$0" && exec "$@"', str(memory // 1024), *command]
     if os.name == "posix" and (setpriv := shutil.which("setpriv")):

@@ -48,7 +48,7 @@ def latin_hypercube(
 
 
 def read_points(path: Path | str) -> list[Point]:
-    """Points of a CSV file: its first line names the parameters, every other one is a point."""
+    """Points of a CSV file: its first line names the parameters, every other line is a point."""
     with Path(path).open(newline="", encoding="utf-8-sig") as file:
         lines = csv.reader(file, skipinitialspace=True)
         rows = [(lines.line_num, [text.strip() for text in row]) for row in lines if row]
@@ -88,7 +88,7 @@ def point_name(values: Point) -> str:
 
 
 def short(value: Value) -> str:
-    """A value with as few digits as distinguish it from all others."""
+    """A value with as few digits as distinguish the value from all other values."""
     if not isinstance(value, float):
         return str(value)
     text = f"{value:.12g}"
@@ -112,7 +112,7 @@ def varied(text: str) -> tuple[str, list[Value]]:
 
 
 def ranged(text: str) -> tuple[str, tuple[float, float]]:
-    """Reads `mu=0:0.5`, a range of a Latin hypercube."""
+    """Reads `mu=0:0.5`, the range of a parameter in a Latin hypercube."""
     name, values = _split(text)
     try:
         low, high = map(float, values.split(":"))
@@ -129,14 +129,14 @@ def _split(text: str) -> tuple[str, str]:
 
 
 def _values(texts: Sequence[str]) -> list[Value]:
-    """The values as numbers, or all of them as texts if one is not a number."""
+    """The values as numbers, or all values as texts if one value is not a number."""
     if all(map(NUMBER.fullmatch, texts)):
         return [float(re.sub("[dD]", "e", text)) for text in texts]
     return list(texts)
 
 
 def _fault(text: str) -> str:
-    """The fault of the text of a value; empty if a deck accepts it."""
+    """The fault of the text of a value; empty if a deck accepts the value."""
     if not text.strip():
         return "a value is missing"
     if DECIMAL_COMMA.fullmatch(text.strip()):

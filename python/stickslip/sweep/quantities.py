@@ -1,4 +1,4 @@
-"""Numbers that a study keeps of each run: a reduction of a history, such as `nodes/TIP/U:2@min`."""
+"""Numbers that a study keeps of each run: reductions of histories, such as `nodes/TIP/U:2@min`."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

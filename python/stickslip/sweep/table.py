@@ -49,7 +49,7 @@ class Table:
 
     @property
     def failed(self) -> int:
-        """Points with a message: the run failed, or a quantity is missing."""
+        """Points with an error message: their run failed, or a quantity is missing."""
         return sum(bool(row["message"]) for row in self.rows)
 
     def column(self, name: str) -> list[Any]:

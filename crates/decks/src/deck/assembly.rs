@@ -1,4 +1,4 @@
-//! Makes decks with parts and an assembly flat: every instance gets the cards of its part, whose spans name the
+//! Makes decks with parts and an assembly flat: every instance gets the cards of its part, and their spans name the
 //! instance. The reader decides what a name or a number means in an instance.
 
 use super::card::{Card, Instance, Placement};
@@ -53,7 +53,7 @@ pub(in crate::deck) fn flatten(deck: Deck, sources: &mut Sources, d: &mut Diagno
     flat
 }
 
-/// Number of an instance and index of its part; zero and `None` for cards outside instances.
+/// Number of an instance and index of its part; for cards outside instances zero and `None`.
 #[derive(Default)]
 struct Copy {
     instance: u32,
@@ -157,7 +157,7 @@ fn without_assembly(mut deck: Deck, d: &mut Diagnostics) -> Deck {
 
 /// A part with its cards.
 pub(super) struct Part {
-    /// Name of the part, unless it cannot be read.
+    /// Name of the part; `None` if the name cannot be read.
     pub name: Option<Name>,
     /// `*PART`.
     pub head: Card,
@@ -180,7 +180,7 @@ pub(super) struct Structure {
     /// The level of the next card.
     level: Level,
     has_assembly: bool,
-    /// Whether the last card is reported to be out of place: of several such cards in a row, only the first is
+    /// Whether the last card has been reported to be out of place: of several such cards in a row, only the first is
     /// reported.
     misplaced: bool,
 }
@@ -264,7 +264,7 @@ impl Structure {
         self.items.push(Item::Instance(head, Vec::new()));
     }
 
-    /// Ends `level`; the cards behind it belong to `outer`.
+    /// Ends `level`; the cards that follow belong to `outer`.
     fn end(&mut self, level: Level, outer: Level, card: &Card, d: &mut Diagnostics) {
         if self.level == Level::Instance && level == Level::Assembly {
             report_open(self.level, card.span, d);
@@ -310,7 +310,7 @@ fn head(level: Level) -> Option<&'static str> {
     }
 }
 
-/// Whether a card may stand here as far as parts and the assembly decide; the order of model and steps is not checked.
+/// Whether parts and the assembly allow a card at its place; the order of model and steps is not checked.
 fn takes(level: Level, card: &Card) -> bool {
     if card.keyword.status != Status::Read {
         return true;
@@ -323,7 +323,7 @@ fn takes(level: Level, card: &Card) -> bool {
     }
 }
 
-/// Place in the deck where a card of these levels belongs, in words.
+/// Place in the deck where a card of the given levels belongs, in words.
 fn advice(levels: Levels) -> &'static str {
     if levels.has(Level::Part) && !levels.has(Level::Assembly) {
         "put it between *PART and *END PART"
@@ -359,7 +359,7 @@ pub(super) fn report_open(level: Level, span: Span, d: &mut Diagnostics) {
 }
 
 /// Largest deviation of the axis of a rotation from the normal of the plane, relative to the length of the axis:
-/// numbers of a deck have six digits or more.
+/// the deviation allows for numbers of six digits.
 const TILT: f64 = 1e-6;
 
 /// Reads the position of an instance; reports a position out of the plane.

@@ -18,7 +18,7 @@ pub struct Card {
     pub span: Span,
     /// Whether an error of the keyword line has been reported.
     pub faulty: bool,
-    /// Whether the deck of a later job adds this card to the model of the job that it continues.
+    /// Whether the deck of a later job adds the card to the model of the earlier job.
     pub added: bool,
     /// Data lines of the card.
     pub rows: DataLines,
@@ -44,7 +44,7 @@ impl Card {
         format!("*{}", self.keyword.name)
     }
 
-    /// The same card, with its names and numbers read as those of an instance of a part.
+    /// The same card, with its names and numbers read as names and numbers of an instance of a part.
     pub(crate) fn in_instance(mut self, instance: u32) -> Card {
         self.span.instance = instance;
         for param in &mut self.params {
@@ -56,7 +56,7 @@ impl Card {
         self.with_rows_in(instance)
     }
 
-    /// The same card, with the names and numbers in its rows read as those of an instance of a part.
+    /// The same card, with the names and numbers in its rows read as names and numbers of an instance of a part.
     pub(crate) fn with_rows_in(mut self, instance: u32) -> Card {
         self.rows.instance = instance;
         self
@@ -78,7 +78,7 @@ impl Card {
         self.param(name).is_some()
     }
 
-    /// The value of a parameter, if it is given and can be read.
+    /// The value of a parameter, if the parameter is given and the value can be read.
     pub fn value(&self, name: &str) -> Option<Text<'_>> {
         let param = self.param(name).filter(|param| !param.faulty)?;
         let (text, span) = param.value.as_ref()?;
@@ -109,13 +109,13 @@ impl Card {
         self.value(name).and_then(|value| value.integer(d))
     }
 
-    /// Marks all parameters and data lines as read: another message says that the card is left out.
+    /// Marks all parameters and data lines as read, because another message says that the card is left out.
     pub fn leave_out(&self) {
         self.params.iter().for_each(|param| param.used.set(true));
         self.rows.read.set(ALL_ROWS);
     }
 
-    /// Warns about parameters that the reader has not used, and reports the first row that it has not read.
+    /// Warns about parameters that the reader has not used, and reports the first row that the reader has not read.
     pub fn report_unused(&self, d: &mut Diagnostics) {
         let read = self.rows.read.get();
         let may_be_left = read != ALL_ROWS && self.keyword.data != Data::Text;
@@ -150,11 +150,11 @@ impl Card {
 pub struct DataLines {
     blocks: Vec<LineBlock>,
     instance: u32,
-    /// Number of rows from the first one to the last one that the reader has asked for; [`ALL_ROWS`] for all rows.
+    /// Number of rows up to the last row that the reader has asked for; [`ALL_ROWS`] for all rows.
     read: Cell<usize>,
 }
 
-/// A number larger than the number of rows of any card.
+/// Number of read rows that stands for all rows: no card has as many rows.
 const ALL_ROWS: usize = usize::MAX;
 
 /// A block of consecutive lines of a file without a keyword line among them.
@@ -206,7 +206,7 @@ impl DataLines {
         self.iter().nth(index)
     }
 
-    /// All rows in order.
+    /// All rows of the card in order.
     pub fn iter(&self) -> impl Iterator<Item = Line<'_>> + Clone {
         let rows = self.lines().flat_map(Lines::data).zip(1..);
         let rows = rows.map(|(row, number)| {

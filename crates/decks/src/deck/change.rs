@@ -6,11 +6,11 @@ use super::lines::{Line, LineKind, Lines};
 use super::text::Text;
 use crate::diagnostics::{Code, Diagnostic, FileId, Sources, Span};
 
-/// A field of a deck with the keyword line that it belongs to.
+/// A field of a deck with the keyword line of its card.
 struct CardField<'a> {
     card: &'a str,
     field: Text<'a>,
-    /// Whether the field is the first one of its row.
+    /// Whether the field is the first field of its row.
     begins: bool,
 }
 

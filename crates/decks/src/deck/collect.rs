@@ -22,7 +22,7 @@ use std::sync::Arc;
 pub struct Deck {
     /// Cards with a known keyword in the order of the deck; the cards of an included file stand in its place.
     pub cards: Vec<Card>,
-    /// Whether a file is missing, which is reported: the missing file might define any name.
+    /// Whether a file is missing (which has been reported), so that it might define any name.
     pub incomplete: bool,
     /// Whether a card is left out because of a reported error.
     pub dropped: bool,
@@ -30,7 +30,7 @@ pub struct Deck {
     pub suspects: HashSet<String>,
     /// Instances of parts; a span refers to an instance by its number, from 1.
     pub instances: Vec<Instance>,
-    /// Asked whether the reading has been cancelled.
+    /// Object that tells whether the reading has been cancelled.
     pub interrupt: Interrupt,
 }
 
@@ -47,7 +47,7 @@ impl Deck {
         cards.filter(move |card| card.keyword.name == keyword)
     }
 
-    /// Number of the instance with this name.
+    /// Number of the instance with a given name.
     pub fn instance(&self, key: &str) -> Option<u32> {
         let mut all = self.instances.iter().zip(1..);
         let found = all.find(|(instance, _)| instance.name.key == key);
@@ -61,7 +61,7 @@ const DEEPEST: usize = 20;
 /// Largest number of files of one deck.
 const MOST_FILES: usize = 1000;
 
-/// Cards of the model that may stand in the deck of a job that continues an earlier one.
+/// Cards of the model that may stand in the deck of a job that continues an earlier job.
 const ADDED: [&str; 8] = [
     "HEADING",
     "AMPLITUDE",
@@ -145,7 +145,7 @@ fn collect(
 
 /// A file being read.
 struct OpenFile {
-    /// Canonical path of the file, which is the same for all paths to it.
+    /// Canonical path of the file, which is the same for all paths to the file.
     identity: PathBuf,
     /// Folder of the file.
     folder: PathBuf,
@@ -160,7 +160,7 @@ impl OpenFile {
     }
 }
 
-/// What happens to the data lines that come next.
+/// Treatment of the data lines that come next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum RowRule {
     /// No keyword stands before the data lines.
@@ -171,7 +171,7 @@ enum RowRule {
     Define,
     /// The data lines are left out.
     Skip,
-    /// The last card has no data lines by definition, so data lines are an error.
+    /// The last card cannot have data lines, so data lines are an error.
     Refuse,
 }
 
@@ -189,7 +189,7 @@ struct Collector<'a> {
     earlier: Option<Box<EarlierDeck>>,
     /// Texts of the files of the earlier deck that is being read, by their names.
     earlier_files: Vec<(String, String)>,
-    /// Range of the cards of the steps of the earlier deck; it ends where the cards of that deck end.
+    /// Range of the cards of the steps of the earlier deck; the range ends where the cards of the earlier deck end.
     earlier_steps: Option<Range<usize>>,
 }
 
@@ -275,7 +275,7 @@ impl Collector<'_> {
         }
     }
 
-    /// Reports the first one of some lines.
+    /// Reports an error at the first of some lines.
     fn refuse(&mut self, lines: Lines, message: String) {
         if let Some(line) = lines.data().next() {
             self.d.error(Code::StrayData, line.span(), message);
@@ -303,7 +303,7 @@ impl Collector<'_> {
         }
     }
 
-    /// Adds a keyword line with its continuation linesfrom `rest`, and reads the file that it names.
+    /// Adds a keyword line with its continuation lines from `rest`, and reads the file that it names.
     fn keyword_line<'l>(&mut self, line: Line<'l>, rest: &mut Lines<'l>) {
         let mut pieces = Vec::new();
         let lines = continued(line, rest);
@@ -395,7 +395,7 @@ impl Collector<'_> {
         pieces.iter().for_each(|piece| self.suspect(piece));
     }
 
-    /// Records the name that a piece with a reported error may define.
+    /// Records the name that a part of the deck with a reported error may define.
     fn suspect(&mut self, piece: &Piece) {
         let (_, value) = piece.text.assignment();
         self.deck
@@ -486,7 +486,7 @@ impl Collector<'_> {
         self.rows = RowRule::Refuse;
     }
 
-    /// Checks that the step and increment of `*RESTART, READ` are those of the checkpoint.
+    /// Checks that `*RESTART, READ` names the step and increment of the checkpoint.
     fn check_place(&mut self, card: &Card, earlier: &EarlierDeck) {
         let [step, increment] = earlier.place;
         let asked = |name, d: &mut Diagnostics| card.integer(name, d).map(|number| number as usize);
@@ -570,7 +570,7 @@ impl Collector<'_> {
         Ok((path, content))
     }
 
-    /// Path of a file, relative to the including file or else to the main deck.
+    /// Path of a file, relative to the including file or, if there is no such file, to the main deck.
     fn find(&self, path: &str) -> Result<PathBuf, String> {
         let (Some(first), Some(last)) = (self.open.first(), self.open.last()) else {
             return Err("this deck was not read from a file".to_string());
@@ -589,7 +589,7 @@ impl Collector<'_> {
     }
 }
 
-/// A keyword line and its continuation: while a line ends with a comma, the next data line belongs to it.
+/// A keyword line and its continuation: while a line ends with a comma, the next line continues the keyword line.
 fn continued<'l>(first: Line<'l>, rest: &mut Lines<'l>) -> Vec<Line<'l>> {
     let mut all = vec![first];
     while all.last().is_some_and(|line| line.ends_with_comma()) {

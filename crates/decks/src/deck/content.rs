@@ -20,7 +20,8 @@ pub fn not_regular() -> io::Error {
 }
 
 /// Opens a regular file to read it. Neither opening nor reading can block: a fifo, which would wait for its writer, is
-/// refused. So is a file that the system makes up as it is read (its size is zero), which would wait for an event.
+/// refused. A file that the system creates as it is read (its size is zero) is also refused, because reading might wait
+/// for an event.
 ///
 /// # Errors
 /// The file does not exist, may not be read, or is not a regular file.
@@ -43,14 +44,14 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
 
 /// Text of a file.
 pub(super) struct Content {
-    /// The text, up to the first fault if there is one.
+    /// The text, up to the first fault if the file has a fault.
     pub text: String,
     /// The byte at the fault: a NUL byte, or a byte of a line that is longer than [`LONGEST_LINE`], ends the text.
     fault: Option<u8>,
 }
 
 impl Content {
-    /// Reads a regular file; stops at the first fault, however long the file is.
+    /// Reads a regular file; stops at the first fault, so the length of the file does not matter.
     pub fn of(path: &Path) -> io::Result<Content> {
         Content::read(open_regular(path)?)
     }

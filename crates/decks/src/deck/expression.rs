@@ -21,7 +21,7 @@ use nom::multi::{many0, separated_list0};
 use nom::sequence::{delimited, pair, preceded, terminated};
 use nom::{IResult, Parser};
 
-/// Value of a parameter. The result of +, -, * and ** of whole numbers is whole, as is that of some functions.
+/// Value of a parameter. The result of +, -, * and ** of whole numbers is whole; so is the result of some functions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum ParameterValue {
     Whole(i64),
@@ -40,13 +40,13 @@ impl ParameterValue {
     }
 }
 
-/// What is wrong with an expression.
+/// Fault of an expression, for a message.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Fault {
     /// Bytes of the expression that are at fault.
     pub at: Range<usize>,
     pub message: String,
-    /// The name without a value, if that is the fault.
+    /// The name without a value, if such a name is the fault.
     pub unknown: Option<String>,
 }
 
@@ -54,7 +54,7 @@ pub(super) struct Fault {
 const DEEPEST: usize = 50;
 const MOST_OPERATORS: usize = 1000;
 
-/// Length of the longest text: a line that other codes read.
+/// Length of the longest text of an expression: the longest line that other codes read.
 const LONGEST_TEXT: usize = 256;
 
 /// The value of an expression, and the names that it uses.
@@ -107,7 +107,8 @@ fn fault(at: Range<usize>, message: &str) -> Fault {
     }
 }
 
-/// Deepest nesting: parentheses open at a time plus signs in a row; or the number of powers if that is larger.
+/// Deepest nesting: the number of parentheses open at a time plus the number of signs in a row, or the number of powers
+/// if this number is larger.
 fn nesting(text: &str) -> usize {
     let (mut open, mut row, mut most) = (0_usize, 0_usize, 0_usize);
     for byte in text.bytes().filter(|byte| !byte.is_ascii_whitespace()) {
@@ -122,7 +123,7 @@ fn nesting(text: &str) -> usize {
     most.max(text.matches("**").count())
 }
 
-/// Kind of word that was expected at a place, which is given by the number of bytes behind it.
+/// Kind of word that was expected at a place; the place is given by the number of bytes behind it.
 #[derive(Debug)]
 struct Expected {
     left: usize,
@@ -163,7 +164,7 @@ type WordPlace<'a> = (usize, &'a str);
 
 type Parsed<'a, T> = IResult<&'a str, T, Expected>;
 
-/// A word with its place; blanks in front of it are skipped.
+/// A word with its place; blanks in front of the word are skipped.
 fn placed<'a>(
     mut word: impl Parser<&'a str, Output = &'a str, Error = Expected>,
 ) -> impl FnMut(&'a str) -> Parsed<'a, WordPlace<'a>> {

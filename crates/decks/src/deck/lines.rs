@@ -15,7 +15,7 @@ pub struct Line<'a> {
     pub file: FileId,
     /// Number of the line in the file, from 1.
     pub number: u32,
-    /// Number of the instance that the names and numbers of the line belong to, from 1; 0 for none.
+    /// Number of the instance that the names and numbers of the line belong to, from 1; 0 for no instance.
     pub instance: u32,
     /// Text of the line without the line end.
     pub text: &'a str,
@@ -85,7 +85,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// All fields in order, empty ones included.
+    /// All fields in order, including empty fields.
     pub fn fields(self) -> impl Iterator<Item = Text<'a>> {
         Fields::new(self.text).map(move |(start, end)| Text {
             text: self.text.get(start..end).unwrap_or(""),
@@ -93,12 +93,12 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// Field `index`, from 0; `None` where it is blank.
+    /// Field `index`, from 0; `None` if the field is blank.
     pub fn get(self, index: usize) -> Option<Text<'a>> {
         self.fields().nth(index).filter(|field| !field.is_empty())
     }
 
-    /// Place of field `index`, or of the whole line where it is blank.
+    /// Place of field `index`, or of the whole line if this field is blank.
     pub fn span_at(self, index: usize) -> Span {
         self.get(index).map_or(self.span(), |field| field.span)
     }
@@ -119,7 +119,7 @@ impl<'a> Line<'a> {
         self.required(index, what, d)?.real(d)
     }
 
-    /// The number in field `index`, or `default` where it is blank.
+    /// The number in field `index`, or `default` if the field is blank.
     pub fn real_or(self, index: usize, default: f64, d: &mut Diagnostics) -> Option<f64> {
         match self.get(index) {
             Some(field) => field.real(d),
@@ -134,15 +134,15 @@ impl<'a> Line<'a> {
         fields.map(str::trim_ascii)
     }
 
-    /// The integers without sign that the line consists of; `None` if it holds anything else.
+    /// The integers without sign that the line consists of; `None` if the line holds anything else.
     pub fn plain_integers(self) -> Option<SmallVec<[u64; 5]>> {
         self.plain_fields()
             .map(|field| field.parse().ok())
             .collect()
     }
 
-    /// The label (an integer without sign) and the coordinates of a line, 0 where they are missing; `None` if the line
-    /// has anything else, or numbers that other codes read differently.
+    /// The label (an integer without sign) and the coordinates of a line, with 0 for missing coordinates. `None` if the
+    /// line has other fields, or numbers that other codes read differently.
     pub fn plain_point(self) -> Option<(u64, [f64; 3])> {
         let mut fields = self.plain_fields();
         let label = fields.next()?.parse().ok()?;
@@ -190,11 +190,11 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Byte ranges of the fields between the commas of a line, without blanks around them; an empty
-/// last field is dropped. Commas between quotation marks do not count.
+/// Byte ranges of the fields between the commas of a line, without blanks around the fields; an empty last field is
+/// dropped. Commas between quotation marks do not count.
 pub(super) struct Fields<'a> {
     text: &'a str,
-    /// Byte where the next field starts; behind the last field it lies beyond the text.
+    /// Byte where the next field starts; behind the last field this byte lies beyond the text.
     start: usize,
 }
 
@@ -233,7 +233,7 @@ impl Iterator for Fields<'_> {
     }
 }
 
-/// The bytes from `start` to `end` without blanks around them.
+/// The bytes from `start` to `end` without blanks at both ends.
 fn trimmed(text: &str, start: usize, end: usize) -> (usize, usize) {
     let bytes = text.as_bytes().get(start..end).unwrap_or_default();
     let blanks = bytes.iter().take_while(|&&byte| byte == b' ').count();
@@ -256,9 +256,9 @@ pub(super) struct Lines<'a> {
     pub text: &'a str,
     /// Byte at which the next line starts.
     pub start: usize,
-    /// Number of the line before that byte.
+    /// Number of the line before the byte at which the next line starts.
     pub before: u32,
-    /// Number of the instance that the names and numbers of the lines belong to, from 1; 0 for none.
+    /// Number of the instance that the names and numbers of the lines belong to, from 1; 0 for no instance.
     pub instance: u32,
 }
 
@@ -297,12 +297,12 @@ impl<'a> Lines<'a> {
         memchr_iter(b'\n', text.as_bytes()).count() as u32 + u32::from(is_open)
     }
 
-    /// The data lines among these lines.
+    /// The data lines among the lines that have not been read.
     pub fn data(self) -> impl Iterator<Item = Line<'a>> + Clone {
         self.filter(|line| line.kind() == LineKind::Data)
     }
 
-    /// Splits off the lines before the next keyword line.
+    /// Splits off the unread lines before the next keyword line.
     pub fn take_block(&mut self) -> Lines<'a> {
         let end = self.start + before_keyword(self.rest());
         let block = Lines {
@@ -354,7 +354,7 @@ fn before_keyword(text: &str) -> usize {
     bytes.len()
 }
 
-/// The byte at which the first line of more than `most` bytes exceeds this length; the CR of a CRLF counts, too.
+/// The byte at which the first line of more than `most` bytes exceeds `most` bytes; the CR of a CRLF also counts.
 pub(super) fn overlong(text: &[u8], most: usize) -> Option<usize> {
     let mut start = 0;
     while text.len() - start > most {
@@ -392,7 +392,7 @@ mod tests {
         assert!(!fit("abcd") && !fit("abcd\n") && !fit("abc\nabcd\na"));
     }
 
-    /// Checks that the fast path for plain lines reads the same values as the fields do.
+    /// Checks that the fast path for plain lines reads the same values as the path through fields.
     fn assert_plain_is_fields(text: &str) {
         let line = Lines::new(FileId(0), text).next().unwrap_or(Line {
             file: FileId(0),

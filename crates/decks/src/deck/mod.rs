@@ -33,7 +33,7 @@ pub use text::{Name, Text};
 use crate::diagnostics::{Diagnostics, Sources};
 use std::path::Path;
 
-/// Reads a deck and the files it includes; parts are copied to their instances.
+/// Reads a deck and the files that it includes; the cards of parts are copied to the instances of these parts.
 pub fn read(path: &Path, sources: &mut Sources, d: &mut Diagnostics) -> Deck {
     let deck = collect::read(path, sources, d);
     assembly::flatten(deck, sources, d)

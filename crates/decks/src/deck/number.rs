@@ -15,7 +15,7 @@ pub(crate) struct Real {
 /// Reason why a field is not a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NotANumber {
-    /// A character, the given one, does not belong to a number.
+    /// The given character does not belong to a number.
     Unexpected(char),
     /// The field ends before the number is complete.
     Incomplete,
@@ -59,23 +59,23 @@ pub(crate) fn real(text: &str) -> Result<Real, NotANumber> {
 }
 
 /// The value of a number in a form that the standard library reads: without `D`, and with the letter of the exponent.
-/// The words `inf` and `nan`, which the standard library reads too, are not finite and give `None`.
+/// The words `inf` and `nan`, which the standard library also reads, are not finite and give `None`.
 pub(super) fn plain_real(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
-/// Byte behind a sign, if a sign stands at this byte; else this byte.
+/// Byte behind the sign that stands at a byte; without a sign, this byte itself.
 fn after_sign(text: &str, at: usize) -> usize {
     at + usize::from(matches!(text.as_bytes().get(at), Some(b'+' | b'-')))
 }
 
-/// Byte behind the digits that begin at this byte.
+/// Byte behind the digits that begin at a byte.
 fn after_digits(text: &str, at: usize) -> usize {
     let rest = text.as_bytes().iter().skip(at);
     at + rest.take_while(|byte| byte.is_ascii_digit()).count()
 }
 
-/// Byte behind `[+-]digits[.digits]` or `[+-].digits`; `Err` with the byte where the text differs from both.
+/// Byte behind `[+-]digits[.digits]` or `[+-].digits`; `Err` with the byte where the text differs from both forms.
 fn after_mantissa(text: &str) -> Result<usize, usize> {
     let first = after_sign(text, 0);
     let whole = after_digits(text, first);
@@ -86,7 +86,8 @@ fn after_mantissa(text: &str) -> Result<usize, usize> {
     if end > first + 1 { Ok(end) } else { Err(end) }
 }
 
-/// Sign and digits of the exponent at this byte, whether its letter is missing, and the byte behind the exponent.
+/// Sign and digits of the exponent at a byte, whether the letter of the exponent is missing, and the byte behind the
+/// exponent.
 fn exponent(text: &str, at: usize) -> Option<(&str, bool, usize)> {
     let has_letter = matches!(text.as_bytes().get(at), Some(b'E' | b'e' | b'D' | b'd'));
     let sign = at + usize::from(has_letter);
@@ -96,7 +97,7 @@ fn exponent(text: &str, at: usize) -> Option<(&str, bool, usize)> {
     is_exponent.then_some((text.get(sign..end)?, !has_letter, end))
 }
 
-/// The first character from a byte on that cannot belong to a number.
+/// The first character, at a byte or behind it, that cannot belong to a number.
 fn unexpected(text: &str, at: usize) -> NotANumber {
     let rest = text.get(at..).unwrap_or("");
     let after = rest.trim_start_matches(|c| "+-.eEdD".contains(c));

@@ -17,18 +17,18 @@ pub(super) struct Parameters {
     values: BTreeMap<String, ParameterValue>,
     /// Places where the parameters are defined.
     places: BTreeMap<String, Span>,
-    /// Parameters that something uses.
+    /// Parameters that a line or an expression uses.
     used: BTreeSet<String>,
-    /// Parameters whose values were given from outside.
+    /// Parameters whose values were given outside the deck.
     given: BTreeSet<String>,
-    /// Parameters without a value, which have a reported error.
+    /// Parameters without a value, after a reported error.
     faulty: BTreeSet<String>,
     /// Whether a line had a name without value since the last [`Self::take_failure`].
     has_failed: bool,
 }
 
 impl Parameters {
-    /// The parameters that get values from `settings`, `name=expression`, in place of the values of the deck.
+    /// The parameters of a deck; `settings` gives values, `name=expression`, in place of the values of the deck.
     pub fn new(settings: &[String], d: &mut Diagnostics) -> Self {
         let mut parameters = Parameters::default();
         parameters.set(settings, d);
@@ -132,7 +132,7 @@ impl Parameters {
         Arc::new(text)
     }
 
-    /// The line with the values of its parameters; `None` where it has no parameter.
+    /// The line with the values of its parameters; `None` if the line has no parameter.
     pub fn replace(
         &mut self,
         line: Line,

@@ -1,4 +1,4 @@
-//! Looks up keywords, parameters and their values in the keyword table; reports the unknown, ignored and refused ones.
+//! Looks up keywords, parameters and their values in the keyword table; reports unknown, ignored and refused words.
 
 use super::card::{Card, Param};
 use super::keywords::{Keyword, Parameter, Status, Takes, find_keyword, keywords};
@@ -94,8 +94,8 @@ fn left_out(fault: Diagnostic) -> Diagnostic {
     }
 }
 
-/// Error of an unknown keyword. If it has several words or begins with a blank, the message suggests that a comment was
-/// meant.
+/// Error of an unknown keyword. If the keyword has several words or begins with a blank, the message suggests that a
+/// comment was meant.
 fn unknown_keyword(starred: &str, span: Span, found: Match) -> Diagnostic {
     let meant = match found {
         Match::Unknown(Some(name)) => Some(format!("*{name}")),
@@ -139,7 +139,7 @@ fn advice(sentence: &str) -> String {
     first.chain(characters).collect()
 }
 
-/// A parameter of `card`, checked against the table; `None` if it is left out.
+/// A parameter of `card`, checked against the table; `None` if the parameter is left out.
 pub(crate) fn parameter(card: &Card, piece: &Piece, d: &mut Diagnostics) -> Option<Param> {
     let span = piece.text.span;
     let (typed, value) = piece.text.assignment();
@@ -174,8 +174,8 @@ pub(crate) fn parameter(card: &Card, piece: &Piece, d: &mut Diagnostics) -> Opti
     Some(param)
 }
 
-/// Reports a parameter or a value that is left out or refused; returns `None` if it is refused. The three texts say
-/// what the object is, what happens to it, and why.
+/// Reports a parameter or a value that is left out or refused; returns `None` if the parameter or value is refused. The
+/// three texts say what the object is, what the program does with it, and why.
 fn report(
     status: Status,
     [what, treated, why]: [&str; 3],
@@ -218,7 +218,7 @@ fn unknown_parameter(card: &Card, typed: &str, piece: &Piece, found: Match) -> D
         .help(help)
 }
 
-/// Checks that a value is given where the parameter takes one, and that it is an allowed word.
+/// Checks that a value is given where the parameter needs a value, and that the value is an allowed word.
 fn check_value(known: &Parameter, is_output: bool, param: &mut Param, d: &mut Diagnostics) {
     let name = known.name;
     let typed = param.value.as_ref().filter(|(value, _)| !value.is_empty());
@@ -237,7 +237,7 @@ fn check_value(known: &Parameter, is_output: bool, param: &mut Param, d: &mut Di
     }
 }
 
-/// The full word of a typed value; `None` if it is unknown or refused.
+/// The full word of a typed value; `None` if the value is unknown or refused.
 fn choose(
     known: &Parameter,
     typed: &str,

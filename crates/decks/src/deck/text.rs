@@ -1,8 +1,8 @@
 //! Fields and parameter values with their places, read as numbers, names or words.
 //!
-//! Values that are not numbers or names are reported, and so are values that Abaqus or CalculiX read differently. Case
-//! and blanks of words do not matter, a word may be shortened to a unique beginning of at least four letters, and a
-//! likely typing error gets a suggestion.
+//! Values that are not numbers or names are reported; values that Abaqus or CalculiX read differently are also
+//! reported. Case and blanks of words do not matter, a word may be shortened to a unique beginning of at least four
+//! letters, and a likely typing error gets a suggestion.
 
 use super::number::{self, LONGEST_NUMBER, NotANumber};
 use crate::diagnostics::{Code, Diagnostic, Diagnostics, Span, closest};
@@ -13,7 +13,7 @@ const LONGEST_NAME: usize = 80;
 /// A field or a parameter's value: its text and its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Text<'a> {
-    /// The text as typed, without blanks around it.
+    /// The text as typed, without blanks at both ends.
     pub text: &'a str,
     /// Place of the text.
     pub span: Span,
@@ -25,7 +25,7 @@ impl<'a> Text<'a> {
         self.text.is_empty()
     }
 
-    /// The value as an integer; anything else is reported.
+    /// The value as an integer; a text that is no integer is reported.
     pub fn integer(&self, d: &mut Diagnostics) -> Option<i64> {
         let parsed = number::integer(self.text);
         parsed
@@ -43,7 +43,7 @@ impl<'a> Text<'a> {
         number::real(self.text).ok().map(|real| real.value)
     }
 
-    /// The value as a real number; anything else is reported.
+    /// The value as a real number; a text that is no number is reported.
     pub fn real(&self, d: &mut Diagnostics) -> Option<f64> {
         match number::real(self.text) {
             Err(why) => {
@@ -57,8 +57,8 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// The value as a real number for which `is_fine` holds. A number that breaks this `rule`, or anything else, is
-    /// reported.
+    /// The value as a real number for which `is_fine` is true. A number that breaks the `rule`, or a text that is no
+    /// number, is reported.
     pub fn real_that(
         &self,
         is_fine: impl Fn(f64) -> bool,
@@ -116,7 +116,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Place of the first blanks, if the field is a list of numbers with blanks between them.
+    /// Place of the first blanks, if the field is a list of numbers with blanks between the numbers.
     fn gap_between_numbers(&self) -> Option<Span> {
         let start = self.text.find(char::is_whitespace)?;
         let (before, after) = self.text.split_at(start);
@@ -174,7 +174,7 @@ impl<'a> Text<'a> {
         (name.trim_end(), Some(Text { text: value, span }))
     }
 
-    /// Key by which the text is compared as a name, valid or not.
+    /// Key by which the text is compared as a name, whether or not the name is valid.
     pub fn name_key(&self) -> String {
         if let Some((prefix, last)) = self.parts() {
             return format!("{}.{}", prefix.name_key(), last.name_key());
@@ -183,7 +183,7 @@ impl<'a> Text<'a> {
         quoted.map_or_else(|| fold(self.text), str::to_string)
     }
 
-    /// The names before and behind a dotif one of the two names is between quotation marks: `"Part 1".Top`.
+    /// The names before and behind a dot, if one of the two names is between quotation marks: `"Part 1".Top`.
     fn parts(&self) -> Option<(Text<'a>, Text<'a>)> {
         let mut is_quoted = false;
         let is_outside = |(at, c): (usize, char)| {
@@ -223,7 +223,7 @@ fn fits(name: &str) -> bool {
     (1..=LONGEST_NAME).contains(&name.chars().count())
 }
 
-/// A name in a deck: shown as typed, compared without case unless it was quoted.
+/// A name in a deck: it is shown as typed, and compared without case unless it was quoted.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Name {
     /// The name as typed, without quotation marks.
@@ -241,7 +241,7 @@ impl Name {
         }
     }
 
-    /// Full name of something in this instance: `Instance.name`.
+    /// Full name of an object in the instance with this name: `Instance.name`.
     pub fn joined(&self, own: &Name) -> Name {
         Name {
             typed: format!("{}.{}", self.typed, own.typed),
@@ -267,19 +267,19 @@ impl std::fmt::Display for Name {
 /// Shortest abbreviation that is understood.
 const SHORTEST: usize = 4;
 
-/// How a typed word matches a list of known words.
+/// Match of a typed word with a list of known words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Match {
     /// The word is this known word.
     Exact(&'static str),
     /// The word is the beginning of this known word. The typed word may also begin longer known words that begin with
-    /// this one: FREQ is FREQUENCY although FREQUENCYF exists.
+    /// this known word: FREQ is FREQUENCY although FREQUENCYF exists.
     Abbreviation(&'static str),
     /// The word is not known; this known word is probably meant.
     Unknown(Option<&'static str>),
 }
 
-/// Upper case without blanks: how words and unquoted names are compared.
+/// The text in upper case without blanks, as words and unquoted names are compared.
 pub(crate) fn fold(word: &str) -> String {
     folded(word).collect()
 }

@@ -19,7 +19,7 @@ impl DeckWriter {
     }
 
     /// Writes a keyword line with its parameters; a line that is longer than 80 characters is continued on the next
-    /// one.
+    /// line.
     pub fn card(&mut self, keyword: &str, parameters: impl IntoIterator<Item = String>) {
         let mut width = 1 + keyword.len();
         self.0.push('*');
@@ -59,7 +59,7 @@ pub(super) fn named(parameter: &str, value: &str) -> String {
     set(parameter, name(value))
 }
 
-/// A name, in quotation marks where it would not be read as one without them.
+/// A name, in quotation marks if it would not be read as one name without quotation marks.
 pub(super) fn name(typed: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || " _-.+/()".contains(c);
     let begins = typed.starts_with(|c: char| c.is_alphabetic() || c == '_');
@@ -69,7 +69,7 @@ pub(super) fn name(typed: &str) -> String {
     }
 }
 
-/// A short text that reads as the same number.
+/// A short text that reads as exactly the given number.
 pub(super) fn number(value: f64) -> String {
     let (plain, scientific) = (format!("{value:?}"), format!("{value:e}"));
     match plain.len() <= SHORT || plain.len() <= scientific.len() {

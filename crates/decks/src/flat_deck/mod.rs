@@ -2,8 +2,8 @@
 //! setting in full, numbers in the shortest form that reads as the same number.
 //!
 //! The flat deck reads as the same model except in three points: contacts stand at other places of the text, each pair
-//! states whether it is surface to surface, and there are no instances: nodes and elements have the numbers of the
-//! mesh. Names of interactions and of time points are made up, because the model does not keep those of the deck.
+//! states its formulation, and nodes and elements have the numbers of the mesh, without instances. Names of
+//! interactions and of time points are made up, because the model does not keep the names of the deck.
 
 mod lines;
 mod model;
@@ -24,8 +24,8 @@ pub fn flat_deck(model: &Model) -> String {
     lines.text()
 }
 
-/// The first difference between this model and the model that `deck` reads as, apart from places and reasons of
-/// contacts and instances of parts; `None` if there is no difference.
+/// The first difference between this model and the model that `deck` reads as, except for places and reasons of
+/// contacts, and instances of parts; `None` if there is no difference.
 pub fn difference(text: &str, model: &Model) -> Option<String> {
     let (mut sources, mut d) = (Sources::new(), Diagnostics::new());
     let deck = deck::parse_str("flat.inp", text, &mut sources, &mut d);
@@ -89,7 +89,7 @@ fn difference_of_steps(a: &Step, b: &Step) -> Option<&'static str> {
     }
 }
 
-/// The model without the parts that a flat deck does not hold.
+/// The model without the data that a flat deck does not hold.
 fn flat(mut model: Model) -> Model {
     model.sets.instances.clear();
     for contact in &mut model.contacts {

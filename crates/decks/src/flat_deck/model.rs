@@ -108,7 +108,7 @@ fn write_contacts(model: &Model, lines: &mut DeckWriter) {
 }
 
 /// Nodes of a rigid body that belong neither to its elements, its node sets nor its surfaces: a constraint makes these
-/// nodes ride on the body.
+/// nodes move with the body.
 fn riders<'m>(body: &'m RigidBody, model: &'m Model) -> impl Iterator<Item = usize> + 'm {
     let elements = body.elements.iter();
     let mut own: BTreeSet<usize> = elements
@@ -135,7 +135,7 @@ fn riders<'m>(body: &'m RigidBody, model: &'m Model) -> impl Iterator<Item = usi
     nodes.filter(move |node| !is_whole && !own.contains(node))
 }
 
-/// Masses at nodes and rotary inertia of rigid bodies, written as elements with numbers above the largest one of the
+/// Masses at nodes and rotary inertia of rigid bodies, written as elements with numbers above the largest number of the
 /// model.
 fn point_elements(model: &Model, lines: &mut DeckWriter) {
     let elements = model.mesh.elements.iter().map(|element| element.label);
@@ -276,7 +276,7 @@ fn general_smoothing(general: &Contact, model: &Model, lines: &mut DeckWriter) {
     rows.into_iter().for_each(|row| lines.row(row));
 }
 
-/// Writes the circles of a contact pair, and the parameter of its card that names them.
+/// Writes the circles of a contact pair, and the parameter of its card that names these circles.
 fn smoothing(contact: &Contact, model: &Model, lines: &mut DeckWriter) -> Option<String> {
     let circles = match &contact.smoothing {
         Smoothing::Straight => return Some(set("GEOMETRIC CORRECTION", "NONE")),
@@ -319,8 +319,8 @@ fn pair(contact: &Contact, interactions: &Interactions, model: &Model, lines: &m
     }
 }
 
-/// Writes which nodes of general contact are moved before the start, and whether the remaining overlaps are pressed
-/// out.
+/// Writes which nodes of general contact are moved before the start, and whether the remaining overlaps are removed in
+/// the first step.
 fn initialization(reach: Option<Reach>, is_fit: bool, lines: &mut DeckWriter) {
     const NAME: &str = "INITIALIZATION-1";
     if reach.is_none() && !is_fit {
@@ -382,7 +382,7 @@ fn write_equation(equation: &Equation, model: &Model, lines: &mut DeckWriter) {
     }
 }
 
-/// A dof that no equation eliminates, as the second term of equations that have only one.
+/// A dof that no equation eliminates, as the second term of equations that have only one term.
 fn any_other_dof(dof: usize, model: &Model) -> Option<usize> {
     let eliminated = |other: &usize| model.equations.iter().any(|e| e.dof == *other);
     (0..model.mesh.dof_count()).find(|other| *other != dof && !eliminated(other))
@@ -405,14 +405,14 @@ fn write_mesh(model: &Model, lines: &mut DeckWriter) {
     surfaces(model, lines);
 }
 
-/// Index of the first node that belongs to a rigid surface: the nodes from this one on are written with the surfaces.
+/// Index of the first node that belongs to a rigid surface: the nodes from this index on are written with the surfaces.
 fn first_of_rigid(model: &Model) -> usize {
     let nodes = model.rigid_segments().into_iter().flatten();
     nodes.min().unwrap_or(model.mesh.node_count())
 }
 
-/// The surface of general contact, if there is one: the last surface, if it has that name and is in contact with
-/// itself.
+/// The surface of general contact, if there is one: the last surface, if it has the name of general contact and is in
+/// contact with itself.
 pub(super) fn all_exterior(model: &Model) -> Option<usize> {
     let last = model.surfaces.len().checked_sub(1)?;
     let touches_itself = |contact: &Contact| contact.slave == last && contact.master == last;
@@ -452,7 +452,7 @@ fn sets(keyword: &str, sets: &[Set], label: impl Fn(&usize) -> u64, lines: &mut 
     }
 }
 
-/// The surfaces, without that of general contact: the card of general contact makes that surface itself.
+/// The surfaces without the surface of general contact, which the card of general contact creates.
 fn surfaces(model: &Model, lines: &mut DeckWriter) {
     let mesh = &model.mesh;
     let own = all_exterior(model).unwrap_or(model.surfaces.len());
@@ -509,15 +509,15 @@ fn point(word: &str, node: usize, mesh: &Mesh) -> [String; 3] {
     [word.to_owned(), x, y]
 }
 
-/// The set of exactly these elements.
+/// The set that consists of exactly the given elements.
 pub(super) fn set_of<'m>(elements: &[usize], model: &'m Model) -> Option<&'m str> {
     let mut sets = model.sets.elements.iter();
     let found = sets.find(|set| set.members == elements)?;
     Some(&found.name)
 }
 
-/// A field that names elements of bodies: empty for all elements, or the name of their set; `None` where no set has
-/// exactly these elements. An empty field would name point masses too, but the flat deck writes their weights as
+/// A field that names elements of bodies: empty for all elements, or the name of a set; `None` where no set has exactly
+/// these elements. An empty field also names point masses, but the flat deck writes the weights of point masses as
 /// forces.
 pub(super) fn elements_field(elements: &[usize], model: &Model) -> Option<String> {
     let mut bodies = model.rigid_bodies.iter();
@@ -613,7 +613,7 @@ fn new_set(index: usize, members: &[usize], model: &Model, lines: &mut DeckWrite
     set.name
 }
 
-/// Writes springs and dashpots; neighbouring ones of the same kind share their cards.
+/// Writes springs and dashpots; neighbouring springs or dashpots of the same kind share a card.
 fn write_connectors(model: &Model, lines: &mut DeckWriter) {
     let alike = |a: &Connector, b: &Connector| {
         let what = |c: &Connector| (c.type_name(), c.direction, c.law);

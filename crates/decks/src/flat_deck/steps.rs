@@ -1,4 +1,5 @@
-//! Writes initial velocities and steps; the cards of a step change the loads of the step before into those of the step.
+//! Writes initial velocities and steps; the cards of a step change the loads of the step before into the loads of the
+//! step.
 
 use super::lines::{DeckWriter, name, named, number, set};
 use super::model::{Interactions, elements_field, friction, pair_row};
@@ -73,8 +74,9 @@ fn initial_temperature(model: &Model, lines: &mut DeckWriter) {
     }
 }
 
-/// Writes the temperatures that differ from those carried over from the step before. Where no temperature is left and
-/// temperatures do not ramp, a card without rows returns all nodes to their initial temperature.
+/// Writes the temperatures that differ from the temperatures carried over from the step before. If no prescribed
+/// temperature is left and temperatures do not ramp, a card without rows returns all nodes to their initial
+/// temperature.
 fn write_temperatures(
     now: &[Load<NodeTemperature>],
     carried: &[Load<NodeTemperature>],
@@ -237,7 +239,7 @@ fn settings(settings: &Settings, lines: &mut DeckWriter) {
     lines.card("STICKSLIP", parameters);
 }
 
-/// Supports that a step hands on to the next one.
+/// Supports that a step hands on to the next step.
 fn carried(supports: &[Support], step: &Step, amplitudes: &[Amplitude]) -> Vec<Support> {
     let period = step.increments.period;
     let kept = supports.iter().map(|&Support { dof, motion }| Support {
@@ -286,7 +288,7 @@ fn write_interferences(step: &Step, before: Option<&Step>, model: &Model, lines:
     }
 }
 
-/// Parameters on the keyword line of a card of supports: the derivative that it prescribes, and the amplitude.
+/// Parameters on the keyword line of a card of supports: the derivative that the card prescribes, and the amplitude.
 fn kind_of(support: &Support) -> (Option<Rate>, Option<usize>) {
     match support.motion {
         SupportMotion::Ramp { .. } => (None, None),
@@ -297,7 +299,7 @@ fn kind_of(support: &Support) -> (Option<Rate>, Option<usize>) {
     }
 }
 
-/// Writes all supports of a step if any of them differs from the step before.
+/// Writes all supports of a step if any support differs from the step before.
 fn write_supports(now: &[Support], carried: &[Support], model: &Model, lines: &mut DeckWriter) {
     if now == carried {
         return;
@@ -361,8 +363,8 @@ fn time_points(index: usize, step: &Step, lines: &mut DeckWriter) {
     }
 }
 
-/// Writes the times of the frames; in the first step also the fields on request, the sets of the history and the dofs
-/// in the status file.
+/// Writes the times of the frames; in the first step also the fields written on request, the sets of the history output
+/// and the dofs in the status file.
 fn requests(index: usize, step: &Step, model: &Model, lines: &mut DeckWriter) {
     let when = match &step.frames {
         Frames::Default => None,
@@ -461,7 +463,7 @@ struct LoadLine {
 pub(super) struct LoadCards([Vec<LoadLine>; 2]);
 
 impl LoadCards {
-    /// Loads of a step, and those carried over from the step before.
+    /// Loads of a step, and loads carried over from the step before.
     pub fn of(step: &Step, model: &Model) -> LoadCards {
         let points = step.point_loads.iter().map(|load| point_load(load, model));
         let bodies = step.body_forces.iter().map(body_force);
@@ -602,8 +604,8 @@ fn traction(load: &Load<Traction>, model: &Model) -> LoadLine {
     }
 }
 
-/// All loads of the places whose loads differ from those of the step before: a load that ramps replaces all earlier
-/// loads of its place.
+/// All loads of the places whose loads differ from the step before: a load that ramps replaces all earlier loads of its
+/// place.
 fn at_changed_places(entries: &[LoadLine], carried: &[LoadLine]) -> Vec<LoadLine> {
     let (now, before) = (by_key(entries), by_key(carried));
     let is_changed = |entry: &&LoadLine| {
@@ -621,7 +623,7 @@ fn by_key(entries: &[LoadLine]) -> HashMap<Key<'_>, Vec<&LoadLine>> {
     by_key
 }
 
-/// Cards in which equal body forces share one entry, where they act on all elements or on a set.
+/// Cards in which equal body forces share one entry, if these forces act on all elements or on a set.
 fn grouped(entries: Vec<LoadLine>, model: &Model) -> Vec<LoadLine> {
     let mut groups: Vec<(LoadLine, Vec<usize>)> = Vec::new();
     let mut rest = Vec::new();

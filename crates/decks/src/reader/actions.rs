@@ -1,5 +1,5 @@
-//! Loads, motions and velocities of nodes without element. Such actions are kept with their places until all cards are
-//! read, because the card that gives such a node a displacement may stand behind them.
+//! Loads, motions and velocities of nodes without element. Actions on nodes without element are kept with their places
+//! until all cards are read, because the card that gives such a node a displacement may stand behind the actions.
 
 use crate::diagnostics::Span;
 

@@ -1,4 +1,4 @@
-//! `*AMPLITUDE`: tables of points, and functions of the time since their start.
+//! `*AMPLITUDE`: tables of points, and functions of the time since the start of the function.
 
 use super::context::Context;
 use super::names::Named;
@@ -24,7 +24,7 @@ impl Amplitudes {
     }
 }
 
-/// Reads all amplitudes, including those in steps.
+/// Reads all amplitudes, including amplitudes in steps.
 pub(crate) fn read(cx: &mut Context) -> Amplitudes {
     let (mut named, mut spans) = (Named::new("amplitude"), Vec::new());
     let deck = cx.deck;
@@ -61,7 +61,7 @@ fn curve(card: &Card, cx: &mut Context) -> Option<Curve> {
     }
 }
 
-/// Time and value as the card gives them, and the field that messages refer to.
+/// Time and value as given on the card, and the field that messages refer to.
 type Given<'a> = (f64, f64, Text<'a>);
 
 /// The points of a table; reports times that do not increase.
@@ -147,7 +147,7 @@ fn pairs<'a>(row: Line<'a>, cx: &mut Context) -> Vec<Given<'a>> {
     pairs
 }
 
-/// Largest time, value or frequency of an amplitude: products of a few of them do not overflow.
+/// Largest time, value or frequency of an amplitude, for which products of a few such numbers do not overflow.
 const LARGEST: f64 = 1e100;
 
 /// Whether numbers of an amplitude are small enough for computing.
@@ -155,7 +155,7 @@ pub(super) fn are_in_reach(numbers: &[f64]) -> bool {
     numbers.iter().all(|number| number.abs() <= LARGEST)
 }
 
-/// Reports numbers of an amplitude that are too large for computing.
+/// Reports numbers of an amplitude that are too large to be computed with.
 pub(super) fn report_out_of_reach(what: &str, span: Span, cx: &mut Context) {
     let message = format!("{what}: the numbers of an amplitude end at {LARGEST:e}");
     cx.error(Code::AmplitudeTable, span, message)

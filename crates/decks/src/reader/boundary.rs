@@ -22,9 +22,9 @@ pub(crate) struct Targets<'a> {
     pub sets: &'a Sets,
     /// All amplitudes with their names.
     pub amplitudes: &'a Amplitudes,
-    /// Masses of the point elements, 0 for those without a mass (mass).
+    /// Masses of the point elements, 0 for elements without a mass (mass).
     pub masses: &'a [f64],
-    /// The rigid bodies; their nodes move with reference nodes.
+    /// The rigid bodies, whose nodes move with their reference nodes.
     pub rigid_bodies: &'a [Rigid],
     /// Whether each node belongs to a plane element.
     pub has_element: &'a [bool],
@@ -78,7 +78,7 @@ enum CardMotion {
 }
 
 impl CardMotion {
-    /// The motion that a row with this value prescribes.
+    /// The motion that a row with the given value prescribes.
     fn motion(self, value: f64) -> SupportMotion {
         match self {
             CardMotion::Displacement(Some(amplitude)) => {
@@ -123,7 +123,7 @@ impl Supports {
         held.or_else(|| self.removed.get(&dof).copied())
     }
 
-    /// Ends a step of this duration: displacements that follow an amplitude in step time keep their last value.
+    /// Ends a step of a given duration: displacements that follow an amplitude in step time keep their last value.
     pub fn end_step(&mut self, period: f64, amplitudes: &[Amplitude]) {
         for held in self.held.values_mut() {
             held.motion = held.motion.after_step(period, amplitudes);
@@ -219,7 +219,7 @@ fn card_motion(card: &Card, targets: Targets, cx: &mut Context) -> Option<CardMo
     })
 }
 
-/// Reports direction 6 at a node other than the reference node of a rigid body: only this node turns.
+/// Reports direction 6 at a node other than the reference node of a rigid body: only reference nodes have an angle.
 fn report_no_angle(span: Span, cx: &mut Context) {
     let message =
         "only directions 1 and 2 can move, and direction 6 of the reference node of a rigid body";
@@ -268,8 +268,8 @@ fn prescribed(row: Line, cx: &mut Context) -> Option<Prescribed> {
     })
 }
 
-/// Names of supports, the directions that they fix in the plane, and whether they fix direction 6 (Abaqus Keywords
-/// Reference, *BOUNDARY).
+/// Names of supports with the directions that each name fixes in the plane, and whether it fixes direction 6 (Abaqus
+/// Keywords Reference, *BOUNDARY).
 const NAMED: [(&str, &[usize], bool); 8] = [
     ("XSYMM", &[0], true),
     ("YSYMM", &[1], true),
@@ -353,7 +353,7 @@ pub(crate) fn row_dofs(
 
 /// Initial velocities of a deck.
 pub(crate) struct InitialVelocity {
-    /// Initial velocities: `2 N` values for the nodes, then those for the angles of the rigid bodies.
+    /// Initial velocities: `2 N` values for the nodes, then the values for the angles of the rigid bodies.
     pub values: Vec<f64>,
     /// Places of the rows that give initial velocities, by dof.
     pub places: BTreeMap<usize, Span>,
@@ -361,7 +361,7 @@ pub(crate) struct InitialVelocity {
     pub actions: Actions,
 }
 
-/// Reads initial velocities; `at_start` holds the supports of the first step, and `supports` their places.
+/// Reads initial velocities; `at_start` holds the supports of the first step, and `supports` the places of these.
 pub(crate) fn initial_velocity(
     outline: &Outline,
     targets: Targets,

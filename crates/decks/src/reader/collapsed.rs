@@ -1,5 +1,5 @@
-//! Quadrilaterals of the deck with two neighbouring corners at one node become triangles. Their sides keep the numbers
-//! that they have in the quadrilateral.
+//! Quadrilaterals of the deck with two neighbouring corners at one node become triangles. The sides of a triangle made
+//! from a quadrilateral keep their numbers in the quadrilateral.
 
 use smallvec::SmallVec;
 
@@ -10,14 +10,14 @@ use crate::model::{ElementType, Formulation, Shape};
 pub(super) struct Collapsed {
     /// Type of the triangle.
     pub element_type: ElementType,
-    /// Positions of the nodes of the triangle among those of the quadrilateral.
+    /// Positions of the nodes of the triangle among the nodes of the quadrilateral.
     pub nodes: SmallVec<[usize; 6]>,
     /// The side of no length, counted from 0.
     pub side: usize,
 }
 
 impl Collapsed {
-    /// The triangle that an element with nodes of these labels becomes; `None` if the element is no quadrilateral with
+    /// The triangle that an element with nodes of given labels becomes; `None` if the element is no quadrilateral with
     /// exactly one side of no length, or if there is no such triangle.
     pub fn new(element_type: ElementType, labels: &[u64]) -> Option<Collapsed> {
         let (shape, is_plain) = match (element_type.shape, element_type.formulation) {
@@ -57,8 +57,8 @@ impl Collapsed {
     }
 }
 
-/// The side of the triangle that is side `side` of a quadrilateral whose side `short` has no length; `None` if both are
-/// the same side.
+/// The side of the triangle that is side `side` of a quadrilateral whose side `short` has no length; `None` if `side`
+/// and `short` are the same side.
 pub(super) fn side_of_triangle(side: usize, short: usize) -> Option<usize> {
     let side = (side + 3 - short) % 4;
     (side < 3).then_some(side)

@@ -94,7 +94,7 @@ pub(super) fn check(model: &Model, elements: &[ConnectorElement], cx: &mut Conte
     }
 }
 
-/// Numbers springs and dashpots of instances; the numbers lie above all others.
+/// Numbers springs and dashpots of instances; these numbers lie above all other numbers.
 fn number_instances(mesh_index: &MeshIndex, all: &mut [Connector]) {
     let elements = mesh_index.mesh.elements.iter().map(|element| element.label);
     let connectors = all.iter().map(|connector| connector.label);
@@ -107,7 +107,7 @@ fn number_instances(mesh_index: &MeshIndex, all: &mut [Connector]) {
     }
 }
 
-/// Makes springs or dashpots of the elements of a card, with the force of this card.
+/// Makes springs or dashpots from the elements of a card, with the force of this card.
 fn card_of(
     (card, law): (&Card, ConnectorLaw),
     orientations: &Orientations,
@@ -198,7 +198,7 @@ fn axes(
 }
 
 /// Direction and force that the rows of a card give. The first row holds the directions of the nodes, except for types
-/// that act along a line.
+/// of springs and dashpots that act along a line.
 fn force(
     card: &Card,
     (kind, elements): (ConnectorKind, &[&ConnectorElement]),

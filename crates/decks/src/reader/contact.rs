@@ -1,5 +1,5 @@
-//! `*CONTACT PAIR` and `*CONTACT`, general contact of every exterior face with every other and with the
-//! rigid surfaces; their interactions, and the nodes that general contact moves before the start.
+//! `*CONTACT PAIR` and `*CONTACT`: contact pairs, and general contact of every exterior face with every other and with
+//! the rigid surfaces. Also interactions of contacts, and the nodes that general contact moves before the start.
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;
@@ -187,7 +187,7 @@ fn check_use(row: Line, slave: Found, master: Found, cx: &mut Context) -> Option
     None
 }
 
-/// Keeps the arcs of rigid surfaces if discs may meet them, because nodes meet only the chords.
+/// Keeps the arcs of rigid surfaces if discs may meet them, because slave nodes that are no discs meet only the chords.
 pub(super) fn keep_arcs_for_discs(model: &mut Model) {
     let has_discs = model
         .contacts
@@ -215,7 +215,7 @@ fn is_hole(profile: &RigidProfile, mesh: &Mesh) -> bool {
     first == last && doubled_area < 0.0
 }
 
-/// Reports rigid surfaces that are slaves although they are no discs.
+/// Reports rigid surfaces that are slaves but not discs.
 pub(super) fn check_discs(model: &Model, cx: &mut Context) {
     for contact in &model.contacts {
         let SurfaceKind::Rigid(profile) = &model.surfaces[contact.slave].kind else {
@@ -340,7 +340,7 @@ pub(super) fn friction_of(card: &Card, cx: &mut Context) -> Option<Friction> {
 }
 
 /// Reads `mu[, ...]`; with EXPONENTIAL DECAY `mu at rest, mu sliding, decay`; else rows `mu, slip rate, pressure`.
-/// ROUGH needs no row.
+/// A card with ROUGH needs no row.
 fn coefficient(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
     if card.has("ROUGH") {
         if let Some(row) = card.rows.first() {
@@ -378,7 +378,8 @@ fn coefficient(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
     Some(Friction::constant(friction).law)
 }
 
-/// Reads rows `mu, slip rate, pressure`, pressure by pressure; the pressures increase, as do the slip rates of each.
+/// Reads rows `mu, slip rate, pressure`, pressure by pressure; the pressures increase, and so do the slip rates of each
+/// pressure.
 fn table(card: &Card, cx: &mut Context) -> Option<FrictionLaw> {
     let mut curves: Vec<FrictionCurve> = Vec::new();
     let mut temperature = None;
@@ -469,7 +470,7 @@ fn heat_of(card: &Card, cx: &mut Context) -> Option<Heat> {
     })
 }
 
-/// A field that is not negative, 0 where it is empty; messages call the field `what`.
+/// The number of a field, which must not be negative; 0 if the field is empty; messages call the field `what`.
 fn not_negative_or_zero(row: Line, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
     match row.get(index) {
         Some(_) => not_negative(row, index, what, cx),
@@ -477,7 +478,7 @@ fn not_negative_or_zero(row: Line, index: usize, what: &str, cx: &mut Context) -
     }
 }
 
-/// A field that is not negative; messages call the field `what`.
+/// The number of a field, which must not be negative; messages call the field `what`.
 fn not_negative(row: Line, index: usize, what: &str, cx: &mut Context) -> Option<f64> {
     let field = row.required(index, what, cx.d)?;
     let rule = format!("{what} must not be negative");
@@ -485,7 +486,7 @@ fn not_negative(row: Line, index: usize, what: &str, cx: &mut Context) -> Option
 }
 
 /// Reads general contact and adds its surface. The surface is in contact with itself and with every rigid surface;
-/// contact with a rigid surface leaves out the slave nodes of contact pairs with it.
+/// contact with a rigid surface leaves out the slave nodes of contact pairs with this surface.
 fn general_contacts(
     outline: &Outline,
     mesh_index: &MeshIndex,
@@ -680,7 +681,7 @@ fn chained(free: &[Face], mesh: &Mesh) -> Vec<Face> {
     chained
 }
 
-/// The initialization that was assigned last in the block of `*CONTACT`; `Err` after a reported error.
+/// The contact initialization that was assigned last in the block of `*CONTACT`; `Err` after a reported error.
 fn initialization(
     outline: &Outline,
     block: &CardBlock,
@@ -698,7 +699,7 @@ fn initialization(
     assigned
 }
 
-/// All data of contact initialization; the cards may stand in the block of `*CONTACT` or outside.
+/// All data of contact initialization; the cards may stand in the block of `*CONTACT` or outside it.
 fn initializations(
     outline: &Outline,
     block: &CardBlock,
@@ -717,9 +718,9 @@ fn initializations(
 /// Initialization of general contact before the start.
 #[derive(Debug, Clone, Copy)]
 struct Initialization {
-    /// Which nodes are moved.
+    /// Choice of the nodes that are moved.
     moved: Option<Reach>,
-    /// Whether overlaps are pressed out in the first step.
+    /// Whether overlaps are removed in the first step.
     is_fit: bool,
 }
 
@@ -762,7 +763,7 @@ fn own_initialization(card: &Card, cx: &mut Context) -> Option<Initialization> {
     })
 }
 
-/// Which nodes are moved and where to; by default only nodes inside the other body are moved.
+/// Choice of the nodes that are moved, and their new places; by default only nodes inside the other body are moved.
 fn reach(card: &Card, cx: &mut Context) -> Option<Reach> {
     let mut or = |name: &str, default: f64| {
         let rule = format!("{name} must not be negative");

@@ -100,8 +100,8 @@ impl<'a> ContactHistory<'a> {
         }
     }
 
-    /// The friction under `*CHANGE FRICTION` for the contacts of an interaction; with RESET it is the friction of the
-    /// model.
+    /// The friction under `*CHANGE FRICTION` for the contacts of an interaction; with RESET the result is the friction
+    /// of the model.
     fn change_friction(
         &mut self,
         card: &Card,
@@ -177,13 +177,13 @@ impl<'a> ContactHistory<'a> {
         }
     }
 
-    /// Ends a step of this duration.
+    /// Ends a step of the given duration.
     pub fn end_step(&mut self, period: f64) {
         self.start += period;
         self.last_period = period;
     }
 
-    /// Ends the changes under way whose amplitudes end.
+    /// Ends those changes under way whose amplitudes end.
     fn end_changes(&mut self, ends: impl Fn(&Amplitude) -> bool, cx: &mut Context) {
         for contact in 0..self.under_way.len() {
             let curve = |change: &ChangeUnderWay| self.amplitudes.named.all.get(change.amplitude);
@@ -268,7 +268,7 @@ impl<'a> ContactHistory<'a> {
     }
 }
 
-/// Reports an amplitude whose values lie outside the range from 0 to 1: they are parts of a change of friction.
+/// Reports an amplitude whose values lie outside the range from 0 to 1: these values are parts of a change of friction.
 fn check_parts(curve: &Amplitude, span: Span, cx: &mut Context) {
     let [least, most] = curve.bounds();
     if least < 0.0 || most > 1.0 {

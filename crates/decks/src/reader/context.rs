@@ -1,5 +1,5 @@
 //! State that all functions of the reader share: the deck and the diagnostics. An undefined name is reported with a
-//! suggestion among the names of all kinds of objects of the deck.
+//! suggestion from the names of all kinds of objects of the deck.
 
 use super::label::{instance_of, label, number_of};
 use crate::deck::{Card, Deck, Line, Name, Placement, Text};
@@ -42,7 +42,7 @@ impl<'a> Context<'a> {
         self.deck.incomplete || self.deck.dropped
     }
 
-    /// The result of reading a card; `None` if the card, or reading it, has a reported error.
+    /// The result of reading a card; `None` if an error of the card or of its reading has been reported.
     pub fn sound<T>(
         &mut self,
         card: &Card,
@@ -53,7 +53,7 @@ impl<'a> Context<'a> {
         read.filter(|_| !card.faulty && self.errors() == errors)
     }
 
-    /// Stops the reading if it has been cancelled.
+    /// Stops the reading if the reading has been cancelled.
     pub fn go_on(&self) {
         self.deck.interrupt.end_if_asked();
     }
@@ -80,7 +80,7 @@ impl<'a> Context<'a> {
         Some(&self.deck.instances.get(index)?.placement)
     }
 
-    /// Name of an object of a part as other cards call it: `Instance.name`.
+    /// Name of an object of a part in the form in which other cards call the object: `Instance.name`.
     pub fn of_instance(&self, name: Name, span: Span) -> Name {
         match self.deck.instance_of(span) {
             Some(instance) => instance.name.joined(&name),
@@ -96,9 +96,9 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Keys of the objects that a name may mean at its place: first objects of its instance, then those of the assembly
-    /// and of the model. In `"instance.name"`, with one pair of quotation marks, each of the two names may be defined
-    /// without such marks.
+    /// Keys of the objects that a name may mean at its place: first objects of the instance there, then objects of the
+    /// assembly and of the model. In `"instance.name"`, with one pair of quotation marks, each of the two names may be
+    /// defined without such marks.
     pub fn keys_of(&self, text: Text) -> [String; 3] {
         let key = text.name_key();
         let of_instance = self.deck.instances.iter().find_map(|instance| {
@@ -112,8 +112,8 @@ impl<'a> Context<'a> {
         [self.key_of(text), key, last]
     }
 
-    /// A number such as `Block-1.12`, with the name of an instance before it, as the number alone, marked as one of
-    /// that instance.
+    /// A number such as `Block-1.12`, with the name of an instance before it, as the number alone, marked as a number
+    /// of that instance.
     pub fn in_instance<'t>(&self, text: Text<'t>) -> Text<'t> {
         if self.deck.instances.is_empty() {
             return text;
@@ -148,7 +148,7 @@ impl<'a> Context<'a> {
         Some(label(text.span.instance, number))
     }
 
-    /// Whether a row of a keyword, such as `*NODE`, begins with this label.
+    /// Whether a row of a keyword, such as `*NODE`, begins with a given label.
     pub fn defines(&self, keyword: &str, label: u64) -> bool {
         let cards = self.deck.cards_of(keyword);
         let rows = cards.flat_map(|card| card.rows.iter());
@@ -156,7 +156,7 @@ impl<'a> Context<'a> {
         labels.any(|known| known == label)
     }
 
-    /// Name of the node or element with this label in the words of the deck.
+    /// Name of the node or element with a given label in the words of the deck.
     pub fn named(&self, label: u64) -> String {
         let index = (instance_of(label) as usize).checked_sub(1);
         let instance = index.and_then(|index| self.deck.instances.get(index));
@@ -166,7 +166,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Reports an undefined name of an object of kind `what`, unless the cause may have been reported already.
+    /// Reports an undefined name of an object of kind `what`, unless a reported error may be the cause.
     pub fn undefined<'n>(
         &mut self,
         what: &str,
@@ -220,7 +220,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Reports a second card of a keyword that may appear once.
+    /// Reports a second card of a keyword that may appear only once.
     pub fn only_once(&mut self, cards: &[&Card]) {
         for card in cards.iter().skip(1) {
             let message = format!("{} appears a second time here", card.title());
@@ -258,7 +258,7 @@ impl Catalogue {
         Catalogue { kinds }
     }
 
-    /// A kind other than `kind` among the objects with this key.
+    /// A kind other than `kind` among the objects with a given key.
     pub fn other_kind(&self, name: &str, kind: &str) -> Option<&'static str> {
         let kinds = self.kinds.get(name)?;
         kinds.iter().copied().find(|other| *other != kind)

@@ -1,5 +1,6 @@
-//! `*COUPLING`, `*KINEMATIC COUPLING` and `*MPC`: nodes that ride on a reference node as a rigid body, nodes whose mean a
-//! reference node follows, and nodes joined to each other. See docs/theory/contact.md and docs/theory/bodies.md.
+//! `*COUPLING`, `*KINEMATIC COUPLING` and `*MPC`: nodes that move with a reference node as a rigid body, reference
+//! nodes that follow the mean of other nodes, and nodes joined to each other. See docs/theory/contact.md and
+//! docs/theory/bodies.md.
 
 use super::boundary::{Direction, direction};
 use super::context::Context;
@@ -11,13 +12,13 @@ use crate::model::Hinge;
 use crate::vectors::distance;
 use std::collections::BTreeSet;
 
-/// Largest distance of two nodes that a pin joins, one of them on a rigid body, relative to the distance to the
-/// farthest node of the body.
+/// Largest distance of two nodes that a pin joins, one node on a rigid body, relative to the distance to the farthest
+/// node of the body.
 const AT_ONE_PLACE: f64 = 1e-6;
 
-/// A connection of nodes other than by a rigid body.
+/// A connection of nodes without a rigid body.
 pub(crate) enum Link {
-    /// Both displacements of a node equal those of another node.
+    /// Both displacements of a node equal the displacements of another node.
     Joined { node: usize, to: usize, span: Span },
     /// A hinge: two nodes at one place that belong to different rigid bodies.
     Hinge { nodes: [usize; 2], span: Span },
@@ -31,7 +32,7 @@ pub(crate) enum Link {
 }
 
 impl Link {
-    /// What messages call the link, as in `the coupling C`.
+    /// Name of the link in messages, as in `the coupling C`.
     pub fn title(&self) -> String {
         match self {
             Link::Joined { .. } | Link::Hinge { .. } => "an *MPC".to_owned(),
@@ -155,7 +156,7 @@ fn coupling(
     }
 }
 
-/// Checks that `first[, last]` name both directions of the plane; empty fields do.
+/// Checks that `first[, last]` name both directions of the plane; empty fields name both.
 fn takes_both([first, last]: [Option<Text>; 2], row: Line, cx: &mut Context) {
     let Some(first) = first.or(last) else { return };
     let mut number = |field: Text| match direction(field, cx)? {
@@ -174,7 +175,7 @@ fn takes_both([first, last]: [Option<Text>; 2], row: Line, cx: &mut Context) {
     }
 }
 
-/// Makes nodes ride on a reference node: adds them to its rigid body, which is made if needed.
+/// Makes nodes move with a reference node: adds them to the rigid body of this node, which is made if needed.
 fn ride(
     name: &str,
     reference: usize,
@@ -263,7 +264,7 @@ fn mpc(
     }
 }
 
-/// Joins two nodes: by equations; by adding one node to the rigid body of the other; or by a hinge between two rigid
+/// Joins two nodes by equations, by adding one node to the rigid body of the other, or by a hinge between two rigid
 /// bodies.
 fn join(
     kind: &str,
@@ -307,7 +308,7 @@ fn join(
     }
 }
 
-/// Whether two nodes, one of them of a rigid body, are at one place; a distance between them is reported.
+/// Whether two nodes, one of which belongs to a rigid body, are at one place; a distance between the nodes is reported.
 fn is_at_one_place(
     [node, to]: [usize; 2],
     body: &Rigid,
@@ -326,7 +327,7 @@ fn is_at_one_place(
     is_near
 }
 
-/// For each node, whether it belongs to an element, a spring or dashpot, or to nodes that are joined.
+/// For each node, whether it belongs to an element, a spring or a dashpot, or is joined to another node.
 pub(super) fn moving_nodes(links: &[Link], lookup: Lookup) -> Vec<bool> {
     let mut moves = lookup.mesh_index.mesh.has_element();
     let connectors = lookup.mesh_index.connectors.iter();

@@ -23,7 +23,8 @@ const LARGEST_RATIO: f64 = 1e50;
 struct Term {
     /// Nodes of the term; the nodes of a set are in the order of their numbers.
     nodes: Vec<usize>,
-    /// Coefficients of the displacements along x and y: one of them is zero unless the instance of the row is turned.
+    /// Coefficients of the displacements along x and y: one coefficient is zero unless the instance of the row is
+    /// turned.
     coefficients: [f64; 2],
     span: Span,
 }
@@ -46,8 +47,8 @@ struct SolvedEquation<'a> {
 /// Equations by the dofs that they eliminate; each equation has one owner.
 type ByDof<'a> = BTreeMap<usize, SolvedEquation<'a>>;
 
-/// Reads all equations with the cards that define them; equations that contain eliminated dofs get the equations of
-/// these dofs substituted.
+/// Reads all equations with the cards that define them; eliminated dofs in an equation are replaced by their own
+/// equations.
 pub(crate) fn read<'a>(
     outline: &Outline,
     targets: Targets<'a>,
@@ -85,8 +86,8 @@ pub(crate) fn read<'a>(
     substituted(solved, targets, cx)
 }
 
-/// The terms of one equation without the faulty ones; line `head` holds the number of terms. `None` when it is unclear
-/// where the next equation begins.
+/// The terms of one equation without the faulty terms; the line `head` holds the number of terms. `None` when it is
+/// unclear where the next equation begins.
 fn terms<'r>(
     card: &Card,
     head: Line,
@@ -152,7 +153,7 @@ fn term(row: Line, first: usize, targets: Targets, cx: &mut Context) -> Option<T
     })
 }
 
-/// The node that a field names, or the nodes of the set in the order of their numbers.
+/// The node that a field names, or the nodes of the named set in the order of their numbers.
 fn nodes(field: Text, targets: Targets, cx: &mut Context) -> Option<Vec<usize>> {
     let errors = cx.errors();
     let mut nodes = targets.sets.nodes_of(field, targets.mesh_index, cx);
@@ -213,7 +214,7 @@ fn solve(terms: &[Term], solved: &mut ByDof, targets: Targets, cx: &mut Context)
 /// this dof stands among the other terms or its terms cancel.
 type Solution = Result<(usize, Vec<(usize, f64)>), usize>;
 
-/// Solves an equation for its first dof, which must not stand among the others.
+/// Solves an equation for its first dof, which must not stand among the other terms.
 fn solved_for((dof, first): (usize, f64), mut others: Vec<(usize, f64)>) -> Solution {
     if others.iter().any(|&(other, _)| other == dof) {
         return Err(dof);
@@ -222,9 +223,9 @@ fn solved_for((dof, first): (usize, f64), mut others: Vec<(usize, f64)>) -> Solu
     Ok((dof, others))
 }
 
-/// Solves an equation for one of the two displacements of a node. Earlier equations are substituted, and the
-/// displacement with the larger coefficient is eliminated; if the other one depends on it, the result is substituted
-/// there too.
+/// Solves an equation for one of the two displacements of a node. Earlier equations are substituted into the equation,
+/// and the displacement with the larger coefficient is eliminated. If the other displacement depends on the eliminated
+/// one, the result is also substituted in its equation.
 fn solved_at_node(
     own: &[(usize, f64)],
     others: impl Iterator<Item = (usize, f64)>,
@@ -270,7 +271,7 @@ fn solved_at_node(
     Ok((pivot, terms))
 }
 
-/// Enters an equation; reports a dof that the equation of another card eliminates already.
+/// Enters an equation; reports a dof that the equation of another card also eliminates.
 fn claim<'a>(
     dof: usize,
     equation: SolvedEquation<'a>,
@@ -383,7 +384,7 @@ fn of_links<'a>(
     }
 }
 
-/// How a tied dof is prescribed.
+/// Relation of the support of a tied dof to the supports of the master.
 enum PrescribedDof {
     Not,
     /// The dof is prescribed in the same way as the dofs of the master in the same direction, so that its support
@@ -392,7 +393,8 @@ enum PrescribedDof {
     Otherwise,
 }
 
-/// How a tied dof is prescribed, compared in all steps with the dofs of the same direction that it follows.
+/// Relation of the support of a tied dof to the supports of the dofs that it follows in the same direction, compared in
+/// all steps.
 fn tied_and_prescribed(dof: usize, terms: &[(usize, f64)], steps: &[Step]) -> PrescribedDof {
     let same_direction = || terms.iter().filter(|(to, _)| to % 2 == dof % 2);
     if steps.iter().all(|step| step.motion_of(dof).is_none()) {
@@ -415,7 +417,7 @@ fn name(dof: usize, targets: Targets) -> String {
     format!("direction {} of node {name}", dof % 2 + 1)
 }
 
-/// The card that prescribes a dof: a support, or the body that the dof moves with.
+/// The card that prescribes a dof: a support, or the body with which the dof moves.
 fn holder<'a>(dof: usize, supports: &Supports, targets: Targets<'a>) -> Option<Owner<'a>> {
     let rides = |body: &&Rigid| body.has(dof / 2);
     match supports.place(dof) {
@@ -453,8 +455,8 @@ fn report_prescribed(
     }
 }
 
-/// The equations with their owners. Eliminated dofs among the terms are replaced by their own equations, so that all
-/// remaining terms are independent.
+/// All equations with the cards that own them. Eliminated dofs among the terms are replaced by their own equations, so
+/// that all remaining terms are independent.
 fn substituted<'a>(
     mut solved: ByDof<'a>,
     targets: Targets,
@@ -497,7 +499,8 @@ fn substituted<'a>(
     equations.into_values().collect()
 }
 
-/// Reports a displacement that would follow another one in a ratio that is too large or too small for computing.
+/// Reports a displacement that would follow another displacement in a ratio that is too large or too small to be
+/// computed with.
 fn report_ratios(
     dof: usize,
     terms: &[(usize, f64)],
@@ -514,7 +517,7 @@ fn report_ratios(
     }
 }
 
-/// The eliminated dofs, each behind the dofs that it depends on; dofs that depend on themselves are left out.
+/// The eliminated dofs, each behind the dofs on which it depends; dofs that depend on themselves are left out.
 fn elimination_order(solved: &ByDof) -> Vec<usize> {
     let mut users: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     let mut open: BTreeMap<usize, usize> = BTreeMap::new();
@@ -544,8 +547,8 @@ fn elimination_order(solved: &ByDof) -> Vec<usize> {
     order
 }
 
-/// Warns where the deck gives an eliminated dof a velocity (`2 N` entries) that differs from the one its equation
-/// implies; `supports` prescribe velocities.
+/// Warns where the deck gives an eliminated dof a velocity (`2 N` entries) that differs from the velocity implied by
+/// its equation; `supports` prescribe velocities.
 pub(crate) fn check_velocities(
     equations: &[(Equation, Owner)],
     velocity: &[f64],

@@ -1,5 +1,5 @@
-//! Formulation of contacts, node to surface or surface to surface, which the reader chooses where the deck leaves it
-//! open. See docs/numerics.md, Faces that lie on each other.
+//! Formulation of contacts, node to surface or surface to surface, which the reader chooses if the deck leaves the
+//! formulation open. See docs/numerics.md, Faces that lie on each other.
 
 use std::cell::LazyCell;
 use std::collections::{HashMap, HashSet};
@@ -14,7 +14,7 @@ use crate::model::{
 use crate::vectors::{Circle, CircleTree, cross, difference, distance, dot, length};
 
 /// Number of faces lying on each other from which on the reader advises against contact pairs in both orders: such a
-/// run takes at least 1.3 times as long as with one order.
+/// run takes at least 1.3 times as long as a run with one order.
 const MANY_LYING: usize = 50;
 
 /// Largest distance of two faces that lie on each other, relative to the longer face.
@@ -26,12 +26,13 @@ const LYING_SINE: f64 = 0.01;
 /// Part of the shorter of two faces that must lie on the other face.
 const LYING_PART: f64 = 0.1;
 
-/// Ratio of the segment lengths of two surfaces below which the first surface counts as the finer one.
+/// Ratio of the segment lengths of two surfaces below which the first surface counts as the finer surface.
 const FINER: f64 = 0.99;
 
-/// Chooses the formulation of contacts that the deck leaves open, if their nodes are slaves on both sides. Contacts with faces
-/// that lie on other bodies are surface to surface, because the conditions of nodes depend on each other there. Then two
-/// pairs of the same surfaces, one in each order, become one pair, as do two pairs that the deck makes surface to surface.
+/// Chooses the formulation of a contact if the deck leaves the formulation open and nodes of both sides are slaves.
+/// Contacts with faces that lie on other bodies are surface to surface, because the conditions of single nodes depend
+/// on each other where faces lie on each other. Then two pairs of the same surfaces, one in each order, become one
+/// pair; so do two pairs that the deck makes surface to surface.
 pub(super) fn choose(model: &mut Model, cx: &mut Context) {
     warn_of_two_laws(model, cx);
     choose_for_general(model);
@@ -94,7 +95,7 @@ fn are_changed_alike(pair: [usize; 2], steps: &[Step]) -> bool {
     })
 }
 
-/// Warns about pairs in both orders whose friction differs: the forces of both add up, each by its own law.
+/// Warns about pairs in both orders whose friction differs: the forces of both pairs add up, each by its own law.
 fn warn_of_two_laws(model: &Model, cx: &mut Context) {
     for (number, contact) in model.contacts.iter().enumerate() {
         let mut before = model.contacts[..number].iter();
@@ -139,18 +140,18 @@ fn choose_for_general(model: &mut Model) {
 
 /// Two contact pairs of the same surfaces, one in each order.
 struct BothOrders {
-    /// Numbers of the two contacts: first the one whose slave is the finer surface (or that stands first), then the
-    /// other.
+    /// Numbers of the two contacts: first the contact whose slave is the finer surface (or that stands first), then the
+    /// other contact.
     contacts: [usize; 2],
     /// Formulation of both contacts.
     formulation: ContactFormulation,
     /// Number of faces of either surface that lie on the other surface.
     lying: usize,
-    /// Whether one contact from surface to surface may stand for both.
+    /// Whether one contact from surface to surface may replace both contacts.
     becomes_one: bool,
 }
 
-/// The contact pairs that stand in both orders, from surface to surface or not, in the order of the second pair.
+/// The contact pairs in both orders, with either formulation, in the order of the second pair.
 fn both_orders(model: &Model) -> Vec<BothOrders> {
     let mut first = HashMap::new();
     let mut both = Vec::new();
@@ -195,8 +196,8 @@ fn both_orders(model: &Model) -> Vec<BothOrders> {
     both
 }
 
-/// Whether one contact from surface to surface can replace two contacts of the same surfaces: both have the same law,
-/// no node is moved or left out, and the formulation is open or surface to surface.
+/// Whether one contact from surface to surface can replace two contacts of the same surfaces: both contacts have the
+/// same law, no node is moved or left out, and the formulation is open or surface to surface.
 fn may_be_one(pair: [&Contact; 2], model: &Model) -> bool {
     let laws = pair.map(|contact| &contact.interaction);
     let is_of_one_side = laws[0].wear.is_some() || laws[0].heat.is_some();
@@ -211,8 +212,8 @@ fn may_be_one(pair: [&Contact; 2], model: &Model) -> bool {
     laws[0] == laws[1] && !is_of_one_side && pair.into_iter().all(may)
 }
 
-/// Tells that pairs in both orders have become one contact. Advises against pairs that stay in both orders although
-/// their faces lie on each other.
+/// Reports, as a note, that pairs in both orders have become one contact. Advises against pairs that stay in both
+/// orders although their faces lie on each other.
 fn report_both_orders(
     model: &Model,
     (of_one, of_two): (&[&BothOrders], &[&BothOrders]),
@@ -259,11 +260,11 @@ struct Place<'a> {
     mesh: &'a Mesh,
     /// Body of every node.
     bodies: &'a [usize],
-    /// For each node, whether it is held in both directions in all steps, by itself or as a part of a rigid body.
+    /// For each node, whether the node is held in both directions in all steps, by itself or as a part of a rigid body.
     held: &'a [bool],
 }
 
-/// For each node, whether it is held in both directions in all steps, by itself or as a part of a rigid body.
+/// For each node, whether the node is held in both directions in all steps, by itself or as a part of a rigid body.
 fn held_nodes(model: &Model) -> Vec<bool> {
     let dofs = prescribed_throughout(&model.steps);
     let is_held = |node: usize| [0, 1].iter().all(|axis| dofs.contains(&(2 * node + axis)));
@@ -275,7 +276,8 @@ fn held_nodes(model: &Model) -> Vec<bool> {
     held
 }
 
-/// Number of the faces that lie on one of `others`, on another body, where at least one of the two can move.
+/// Number of the faces that lie on a face of another body in the list `others`, where at least one of the two faces can
+/// move.
 fn lying_faces([faces, others]: [&[[usize; 2]]; 2], place: &Place) -> usize {
     let (x, bodies) = (&place.mesh.coordinates, place.bodies);
     let is_held = |face: [usize; 2]| face.iter().all(|&node| place.held[node]);
@@ -302,7 +304,7 @@ fn lying_faces([faces, others]: [&[[usize; 2]]; 2], place: &Place) -> usize {
     lies.into_iter().filter(|lies| *lies).count()
 }
 
-/// Whether two faces run in opposite directions along one line and share a part of it.
+/// Whether two faces run in opposite directions along one line and share a part of this line.
 fn lie_on_each_other([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
     let [e, f] = [difference(a, b), difference(p, q)];
     let [of_e, of_f] = [length(e), length(f)];
@@ -316,7 +318,8 @@ fn lie_on_each_other([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2]) -> bool {
     is_near(from) && is_near(to) && common >= LYING_PART * of_e.min(of_f)
 }
 
-/// Replaces surface to surface by node to surface where it cannot be used, with a warning that says why.
+/// Replaces surface to surface by node to surface where surface to surface cannot be used, with a warning that says
+/// why.
 pub(super) fn restrict(model: &mut Model, cx: &mut Context) {
     for number in 0..model.contacts.len() {
         let contact = &model.contacts[number];
@@ -332,7 +335,7 @@ pub(super) fn restrict(model: &mut Model, cx: &mut Context) {
     }
 }
 
-/// Reason why a contact cannot be surface to surface; `None` if it can.
+/// Reason why a contact cannot be surface to surface; `None` if it can be surface to surface.
 fn not_from_surface_to_surface(contact: &Contact, model: &Model) -> Option<&'static str> {
     let [slave, master] = [contact.slave, contact.master].map(|i| &model.surfaces[i]);
     let is_of_faces = |surface: &Surface| matches!(surface.kind, SurfaceKind::Faces(_));

@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 pub(crate) struct Interferences {
     all: LoadHistory<usize, Interference>,
     operation: Operation,
-    /// For each contact, the last step that gives it an overlap, and whether the row names the surfaces in the order of
-    /// the contact.
+    /// For each contact, the last step that gives the contact an overlap, and whether the row names the surfaces in the
+    /// order of the contact.
     given: BTreeMap<usize, (usize, bool)>,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct Pairs<'a> {
 }
 
 impl Interferences {
-    /// Adds the overlap that general contact presses out in the first step.
+    /// Adds the overlap that general contact removes in the first step.
     pub fn first_step(&mut self, contacts: &[Contact]) {
         let fitted = contacts.iter().enumerate();
         for (contact, _) in fitted.filter(|(_, contact)| contact.is_interference_fit) {
@@ -111,7 +111,7 @@ impl Interferences {
         }
     }
 
-    /// Allows an overlap, which must not begin below the overlap that is left of the step before.
+    /// Allows an overlap, which must not begin below the overlap that the step before has left.
     fn add(
         &mut self,
         contact: usize,

@@ -27,9 +27,9 @@ pub(super) struct LabelMap<T> {
     runs: Vec<(u64, usize)>,
     /// Values of the labels of all runs.
     values: Vec<T>,
-    /// The label after the largest one of the runs.
+    /// The label behind the largest label of the runs.
     next: u64,
-    /// Labels that were added after larger ones.
+    /// Labels that were added after larger labels.
     others: BTreeMap<u64, T>,
 }
 
@@ -54,7 +54,7 @@ impl<T> LabelMap<T> {
         }
     }
 
-    /// Sets the value of a label; returns its earlier value.
+    /// Sets the value of a label; returns the earlier value of the label.
     pub fn insert(&mut self, label: u64, value: T) -> Option<T> {
         if label < self.next {
             return match self.place(label) {

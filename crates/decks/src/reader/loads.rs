@@ -34,7 +34,7 @@ pub(crate) struct LoadHistories {
 /// A face, and the surface (index) on which `*DSLOAD` loads it; `None` for `*DLOAD`.
 type OnFace = (Option<usize>, Face);
 
-/// Kinds of load that follow their face; a later step replaces a load of the same kind.
+/// Kinds of load on a face; a later step replaces a load of the same kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Follower {
     Pressure,
@@ -61,7 +61,7 @@ enum FaceLoad {
     Dead([f64; 2]),
     /// A traction along a direction that turns with the face.
     Turning([f64; 2]),
-    /// A shear along the face, to the side of this direction.
+    /// A shear along the face, to the side of the given direction.
     Shear([f64; 2]),
 }
 
@@ -259,7 +259,7 @@ impl LoadHistories {
         Some(())
     }
 
-    /// Adds the weight of a point mass as a force in each direction; both forces replace those of earlier steps.
+    /// Adds the weight of a point mass as a force in each direction; both forces replace weights from earlier steps.
     fn add_weight(&mut self, point: usize, magnitude: f64, direction: [f64; 2], source: Source) {
         let Targets {
             mesh_index, masses, ..
@@ -465,8 +465,8 @@ fn loaded_side(kind: &str) -> Option<(&'static str, usize)> {
     Some((name, side))
 }
 
-/// Smallest cosine of the angle between a face and the direction of a shear: below it the sense of the shear along the
-/// face is undecided.
+/// Smallest cosine of the angle between a face and the direction of a shear: below this cosine the sense of the shear
+/// along the face is undecided.
 const ACROSS: f64 = 1e-3;
 
 /// Largest distance of a node of a straight side from the chord of the side, relative to the length of the chord.
@@ -480,7 +480,7 @@ fn chord(face: Face, targets: Targets) -> [f64; 2] {
     difference(a, b).map(|x| x / length)
 }
 
-/// The unit vector along a straight face; a curved face, which has no single such vector, is reported.
+/// The unit vector along a straight face; a curved face is reported, because it has no single such vector.
 fn straight(face: Face, row: Line, targets: Targets, cx: &mut Context) -> Option<[f64; 2]> {
     let (mesh, along) = (&targets.mesh_index.mesh, chord(face, targets));
     let [first, last] = face.ends(mesh).map(|node| mesh.coordinates[node]);
@@ -512,7 +512,7 @@ fn masses_of(row: Line, targets: Targets, cx: &mut Context) -> Vec<usize> {
     points
 }
 
-/// Warns that a centrifugal force does not act on point masses if there are some among the elements of a row.
+/// Warns that a centrifugal force does not act on point masses if a row names point masses.
 fn warn_of_masses(row: Line, targets: Targets, cx: &mut Context) {
     if !masses_of(row, targets, cx).is_empty() {
         let message = "CENTRIF does not act on elements of the type MASS";
@@ -542,7 +542,7 @@ fn hint_at_units(row: Line, magnitude: f64, cx: &mut Context) {
     }
 }
 
-/// Reads fields 3 to 5, dx, dy, dz with dz = 0, and makes them a unit vector.
+/// Reads fields 3 to 5, dx, dy, dz with dz = 0, and makes a unit vector from these.
 fn unit_direction(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
     let components = [3, 4, 5].map(|i| row.real_or(i, 0.0, cx.d));
     let [Some(x), Some(y), Some(z)] = components else {
@@ -565,8 +565,8 @@ fn unit_direction(row: Line, cx: &mut Context) -> Option<[f64; 2]> {
     Some([x / length, y / length])
 }
 
-/// Warns about the direction of an acceleration if it is no unit vector: CalculiX multiplies the acceleration by its
-/// length.
+/// Warns if the direction of an acceleration is no unit vector: CalculiX multiplies the acceleration by the length of
+/// the vector.
 fn warn_unless_unit(row: Line, cx: &mut Context) {
     let component = |i: usize| row.get(i).and_then(|field| field.as_real());
     let length = component(3)
@@ -617,7 +617,7 @@ fn face_load(name: &str, row: Line, card: &Card, cx: &mut Context) -> Option<Fac
     })
 }
 
-/// How a load without amplitude reaches its magnitude, and the step that gives the load.
+/// Course by which a load without amplitude reaches its magnitude, and the step that gives the load.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StepContext {
     /// Number of the step, from 1; 0 for model data.
@@ -653,7 +653,7 @@ impl Operation {
 
 /// The loads of one kind by their keys.
 pub(crate) struct LoadHistory<K, T> {
-    /// The first `sorted` loads are in the order of their keys; later ones follow in any order.
+    /// The first `sorted` loads are in the order of their keys; later loads follow in any order.
     parts: Vec<(K, CarriedLoad<T>)>,
     sorted: usize,
 }
@@ -666,7 +666,7 @@ pub(super) struct CarriedLoad<T> {
     end: f64,
     /// Number of the step that gave the load.
     step: u32,
-    /// Whether another load has replaced this one.
+    /// Whether another load has replaced the load.
     replaced: bool,
 }
 
@@ -743,7 +743,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.parts.push((key, part.rising_from(from)));
     }
 
-    /// Adds a load that falls from a magnitude to zero over the step. This load replaces the loads of earlier steps
+    /// Adds a load that falls from a magnitude to zero over the step. The new load replaces the loads of earlier steps
     /// under the same key.
     pub fn add_falling(&mut self, key: K, at: T, from: f64, step: usize) {
         let context = StepContext { step, ramp: true };
@@ -752,7 +752,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
         self.parts.push((key, part.rising_from(from)));
     }
 
-    /// Removes the loads that a step has added under a key, and restores those that they replaced.
+    /// Removes the loads that a step has added under a key, and restores the loads that these had replaced.
     pub fn take_back(&mut self, key: K, step: usize) {
         (self.parts).retain(|(known, part)| *known != key || part.step as usize != step);
         let own = self.parts.iter_mut().filter(|(known, _)| *known == key);
@@ -780,7 +780,7 @@ impl<K: Ord + Copy, T: Copy + PartialEq> LoadHistory<K, T> {
             .filter(move |part| (part.step as usize) < context.step && !part.replaced)
     }
 
-    /// Drops replaced loads and sorts the others by their keys.
+    /// Drops replaced loads and sorts the other loads by their keys.
     fn sort(&mut self) {
         self.parts.retain(|(_, part)| !part.replaced);
         if !self.parts.is_sorted_by_key(|(key, _)| *key) {
@@ -863,7 +863,7 @@ impl<T: Copy> CarriedLoad<T> {
         load.ends().map_or(load, |ends| load.between(ends))
     }
 
-    /// Magnitude at the end of the step before, from which a load ramps that replaces this one.
+    /// Magnitude at the end of the step before, from which a replacing load ramps.
     pub fn reached(&self, context: StepContext) -> f64 {
         match (self.step as usize == context.step, self.load.variation) {
             (true, Variation::Ramp { from }) => from,
@@ -873,7 +873,7 @@ impl<T: Copy> CarriedLoad<T> {
 }
 
 impl<T> CarriedLoad<T> {
-    /// A new load; if loads ramp, it grows from zero to its magnitude.
+    /// A new load; if loads ramp, the load grows from zero to its magnitude.
     pub fn new(
         at: T,
         magnitude: f64,
@@ -898,7 +898,7 @@ impl<T> CarriedLoad<T> {
         }
     }
 
-    /// The same load; if it ramps, it grows from this magnitude.
+    /// The same load; a load that ramps grows from the given magnitude.
     pub fn rising_from(mut self, from: f64) -> CarriedLoad<T> {
         if let Variation::Ramp { .. } = self.load.variation {
             self.load.variation = Variation::Ramp { from };

@@ -121,7 +121,7 @@ fn draft(
     }
 }
 
-/// Reads rows `alpha[, T]` of increasing temperatures; alpha is the mean from `ZERO` to T.
+/// Reads rows `alpha[, T]` of increasing temperatures; alpha is the mean expansion from `ZERO` to T.
 fn expansion(cards: &[&Card], cx: &mut Context) -> Constant<Expansion> {
     cx.only_once(cards);
     let Some(card) = cards.first() else {
@@ -189,7 +189,7 @@ fn hint_at_units(material: &Material, span: Span, cx: &mut Context) {
 /// Keywords of the laws.
 const KEYWORDS: [&str; 2] = ["ELASTIC", "HYPERELASTIC"];
 
-/// The law of a material, of which there must be one.
+/// The law of a material; a material without a law, or with two laws, is reported.
 fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
     let is_law = |card: &&&Card| KEYWORDS.contains(&card.keyword.name);
     let mut cards = block.parts.iter().filter(is_law);
@@ -216,7 +216,7 @@ fn law(block: &CardBlock, cx: &mut Context) -> Constant<Law> {
     })
 }
 
-/// The metal of `*ELASTIC` and `*PLASTIC`. The elastic strains of this metal are logarithmic (Hencky), with or without
+/// The metal of `*ELASTIC` and `*PLASTIC`. The elastic strains of the metal are logarithmic (Hencky), with or without
 /// TYPE=HENCKY in the deck.
 fn metal(elasticity: &Card, plasticity: &Card, cx: &mut Context) -> Constant<Law> {
     let is_of_metals =
@@ -299,7 +299,7 @@ fn hardening(card: &Card, cx: &mut Context) -> Option<(Vec<[f64; 2]>, f64)> {
     Some((vec![[0.0, first]], (second - first) / strain))
 }
 
-/// Place of the constant that determines Poisson's ratio: the second one of the law.
+/// Place of the constant that determines Poisson's ratio: the second constant of the law.
 fn poisson_span(block: &CardBlock) -> Option<Span> {
     let mut cards = block.parts.iter();
     let card = cards.find(|card| KEYWORDS.contains(&card.keyword.name))?;
@@ -332,7 +332,7 @@ fn elastic_row(row: Line, cx: &mut Context) -> Option<Law> {
     Some(Law::elastic(young?, poisson?))
 }
 
-/// Reads a row `E, nu[, T]` for the neo-Hookean material with these moduli at small strains.
+/// Reads a row `E, nu[, T]` for the neo-Hookean material that has these moduli at small strains.
 fn elastic_neo_hooke_row(row: Line, cx: &mut Context) -> Option<Law> {
     let SmallStrainModuli { young, poisson } = elastic_row(row, cx)?.small_strain();
     let law = NeoHooke::of_small_strain(SmallStrainModuli { young, poisson });
@@ -467,7 +467,7 @@ fn ogden_rows(rows: &[Line], terms: usize, cx: &mut Context) -> Option<Law> {
     Some(Law::Ogden(law))
 }
 
-/// D2 or D3; zero if the field is empty.
+/// Constant D2 or D3; zero if the field is empty.
 fn higher_d(row: Line, index: usize, cx: &mut Context) -> Option<f64> {
     let rule = "D2 and D3 must not be negative; 0 is none";
     let field = row.get(index).filter(|field| !field.text.is_empty());
@@ -497,8 +497,8 @@ fn positive_c10(c10: Text, cx: &mut Context) -> Option<f64> {
     c10.real_that(|c10| c10 > 0.0, rule, Code::MaterialRange, cx.d)
 }
 
-/// Ratio K/mu of a material with D1 = 0. In plane stress, at stretches from 0.5 to 1.5, the force of such a material
-/// differs from that of an incompressible one by at most 5e-5 of the force.
+/// Ratio K/mu of a material with D1 = 0. In plane stress, at stretches from 0.5 to 1.5, the force of a material with
+/// K/mu = 1e4 differs from the force of an incompressible material by at most 5e-5 of the force.
 const NEARLY_INCOMPRESSIBLE: f64 = 1e4;
 
 /// Reads D1 in field `index` of a material with the shear modulus mu = 2 c; zero means K = 1e4 mu:
@@ -566,7 +566,7 @@ enum Constant<T> {
 }
 
 impl<T> Constant<T> {
-    /// The constant, if there is one without an error.
+    /// The constant, if the deck gives it without an error.
     pub fn given(self) -> Option<T> {
         match self {
             Constant::Given(value) => Some(value),
@@ -575,7 +575,7 @@ impl<T> Constant<T> {
     }
 }
 
-/// The constant that all rows of a card agree on.
+/// The value of a constant, on which all rows of a card must agree.
 fn constant<T: PartialEq>(
     cards: &[&Card],
     read: fn(Line, &mut Context) -> Option<T>,

@@ -13,7 +13,7 @@ use std::collections::{HashMap, HashSet};
 
 /// The mesh, with the numbers and sets that the deck gives to its nodes and elements.
 pub(crate) struct MeshIndex {
-    /// The mesh: nodes that belong to elements, and elements. The sections of its elements are not known yet.
+    /// The mesh: nodes that belong to elements, and elements. The elements of the mesh have no sections yet.
     pub mesh: Mesh,
     /// Instances of parts.
     pub instances: Vec<Instance>,
@@ -24,11 +24,11 @@ pub(crate) struct MeshIndex {
     pub elements: Labels,
     /// Faces of the plane elements that the line elements name.
     pub lines: Vec<Face>,
-    /// Point elements, whose indices follow those of the line elements.
+    /// Point elements, whose indices follow the indices of the line elements.
     pub points: Vec<PointElement>,
     /// Springs and dashpots.
     pub connectors: Vec<ConnectorElement>,
-    /// Rigid lines, whose indices follow those of springs and dashpots.
+    /// Rigid lines, whose indices follow the indices of springs and dashpots.
     pub rigid_lines: Vec<RigidLine>,
     /// Places of the plane elements.
     pub places: Vec<Span>,
@@ -38,7 +38,7 @@ pub(crate) struct MeshIndex {
     pub node_groups: Vec<Group>,
     /// Element sets named on `*ELEMENT`.
     pub element_groups: Vec<Group>,
-    /// Faces on both sides of the cuts of pre-tension sections; only surfaces that name such faces contain them.
+    /// Faces on both sides of the cuts of pre-tension sections; only surfaces that name these faces contain them.
     pub cut_faces: HashSet<Face>,
 }
 
@@ -95,7 +95,7 @@ pub(crate) struct ConnectorKind {
 }
 
 impl ConnectorKind {
-    /// The type with this name, in capitals without blanks.
+    /// The type with a given name, in capitals without blanks.
     pub fn from_name(name: &str) -> Option<Self> {
         let families = [
             ("SPRING", ConnectorLaw::Spring),
@@ -112,7 +112,7 @@ impl ConnectorKind {
         })
     }
 
-    /// Number of nodes of an element of this type.
+    /// Number of nodes of an element of the type.
     pub fn nodes(self) -> usize {
         if self.form == '1' { 1 } else { 2 }
     }
@@ -187,7 +187,7 @@ impl MeshIndex {
         }
     }
 
-    /// Adds nodes without element at these points; their numbers follow the largest number of a node.
+    /// Adds nodes without element at given points; the numbers of these nodes follow the largest number of a node.
     pub fn add_points(&mut self, points: &[[f64; 2]]) {
         let largest = self.mesh.node_labels.iter().max().copied().unwrap_or(0);
         let labels = (1..).map(|i| largest.saturating_add(i));
@@ -220,7 +220,7 @@ impl MeshIndex {
         }
     }
 
-    /// Removes nodes that are not used, and gives the others new indices.
+    /// Removes nodes that are not used, and gives the other nodes new indices.
     pub fn keep_nodes(&mut self, used: &[bool]) {
         let mut count = 0;
         let numbers = used.iter().map(|&used| {
@@ -292,8 +292,8 @@ fn first_number<'l>(labels: impl Iterator<Item = &'l u64>) -> u64 {
     1 + others.max().copied().unwrap_or(0)
 }
 
-/// Gives labels of instances new numbers from `next` on; returns the index, the instance and the number in the part of
-/// each.
+/// Gives labels of instances new numbers from `next` on; returns index, instance and number in the part of each
+/// renumbered node or element.
 fn renumbered<'l>(
     labels: impl Iterator<Item = &'l mut u64>,
     mut next: u64,

@@ -1,4 +1,4 @@
-//! From cards to the model: what each keyword means, and the checks across them.
+//! The reader makes a model from cards: it knows the meaning of each keyword, and makes checks across keywords.
 //!
 //! One file per family of keywords. Names and numbers are collected before they are looked up, so the order of a deck
 //! never matters. Names that a faulty card defines are marked, so that their uses are not reported as undefined.
@@ -80,7 +80,7 @@ pub fn build(deck: &Deck, d: &mut Diagnostics) -> Option<Model> {
     (!d.has_errors()).then_some(model)
 }
 
-/// Reads the whole model; cards with errors are missing in it.
+/// Reads the whole model; cards with errors are missing in this model.
 fn read(cx: &mut Context) -> Model {
     let outline = Outline::new(cx);
     let mut mesh_index = nodes_elements::read(&outline, cx);
@@ -210,7 +210,7 @@ fn read(cx: &mut Context) -> Model {
     model
 }
 
-/// The sets of the model; element sets with line or point elements, springs or dashpots only are left out.
+/// The sets of the model; element sets without plane elements are left out.
 fn named_sets(sets: Sets, histories: Histories, instances: Vec<Instance>) -> NamedSets {
     let is_kept = |&set: &usize| !sets.holds_others_only(set);
     let kept: Vec<usize> = (0..sets.elements.len()).filter(is_kept).collect();

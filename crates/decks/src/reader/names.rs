@@ -7,10 +7,10 @@ use crate::deck::{Card, Name, Text};
 use crate::diagnostics::{Code, Diagnostic, Span};
 use std::collections::HashMap;
 
-/// The names of one kind of object, numbered in the order of their definition.
+/// The names of one kind of object, numbered in the order of definition.
 pub(super) struct Names {
     what: &'static str,
-    /// Whether parts may define such names, once for each of their instances.
+    /// Whether parts may define names of this table, once for each of their instances.
     of_parts: bool,
     index: HashMap<String, Option<usize>>,
     typed: Vec<Name>,
@@ -111,8 +111,8 @@ impl Names {
         found?
     }
 
-    /// Number of a name as it is meant at its place; `Some(None)` if its definition has an error, `None` if it is
-    /// undefined.
+    /// Number of the object that a name means at its place; `Some(None)` if the definition of the name has an error,
+    /// `None` if the name is undefined.
     fn known(&self, text: Text, cx: &Context) -> Option<Option<usize>> {
         let keys = match self.of_parts {
             true => cx.keys_of(text),
@@ -166,7 +166,7 @@ impl<T> Named<T> {
         }
     }
 
-    /// The object with this name; an undefined name is reported.
+    /// The object with a given name; an undefined name is reported.
     pub fn find(&self, name: Text, cx: &mut Context) -> Option<&T> {
         self.all.get(self.names.find(name, cx)?)
     }
@@ -177,22 +177,22 @@ impl<T> Named<T> {
 pub(super) struct Labelled(u32);
 
 impl Labelled {
-    /// A node or element that is left out, after a report.
+    /// A node or element that is left out, after a message about it.
     pub const LEFT_OUT: Labelled = Labelled(u32::MAX);
 
-    /// The node or element with this index.
+    /// The node or element has this index.
     pub fn new(index: usize) -> Labelled {
         Labelled(index as u32)
     }
 
-    /// The index of the node or element; `None` if it is left out.
+    /// The index of the node or element; `None` if the node or element is left out.
     pub fn index(self) -> Option<usize> {
         (self != Labelled::LEFT_OUT).then_some(self.0 as usize)
     }
 }
 
 /// Largest node or element number, which is also the largest that Abaqus reads. CalculiX keeps 32 bits of a number, and
-/// the points of rigid surfaces get numbers after the largest one of the deck.
+/// the points of rigid surfaces get numbers after the largest number of the deck.
 const LARGEST_LABEL: i64 = 999_999_999;
 
 /// Node or element numbers of the deck, as labels.
@@ -200,7 +200,7 @@ pub(super) struct Labels {
     what: &'static str,
     code: Code,
     index: LabelMap<Labelled>,
-    /// Whether some numbers could not be read, which has been reported.
+    /// Whether some numbers could not be read (after reported errors).
     pub incomplete: bool,
 }
 
@@ -225,7 +225,7 @@ impl Labels {
         self.index.reserve(count);
     }
 
-    /// Gives new indices; objects without a new index are left out from here on.
+    /// Gives new indices; objects without a new index are left out from this call on.
     pub fn renumber(&mut self, numbers: &[Option<usize>]) {
         for labelled in self.index.values_mut() {
             let number = labelled.index().and_then(|index| numbers[index]);
@@ -233,12 +233,12 @@ impl Labels {
         }
     }
 
-    /// Meaning of a number.
+    /// Meaning of a number of the deck.
     pub fn get(&self, label: u64) -> Option<Labelled> {
         self.index.get(label).copied()
     }
 
-    /// Index of the node or element with this number; a number that does not exist is reported.
+    /// Index of the node or element with a given number; a number that does not exist is reported.
     pub fn find(&self, text: Text, cx: &mut Context) -> Option<usize> {
         let label = self.label(text, cx)?;
         match self.get(label) {
@@ -250,7 +250,7 @@ impl Labels {
         }
     }
 
-    /// The label of the number in `text`, with its instance.
+    /// The label of the number in `text`, which includes the instance.
     pub fn label(&self, text: Text, cx: &mut Context) -> Option<u64> {
         let text = cx.in_instance(text);
         let number = self.number(text, cx)?;

@@ -3,7 +3,7 @@
 use crate::model::nearest_of;
 use crate::vectors::{Circle, CircleTree, distance};
 
-/// Straight lines in a tree, for finding the ones near a place.
+/// Straight lines in a tree, for finding the lines near a place.
 pub(super) struct NearestLines {
     lines: Vec<[[f64; 2]; 2]>,
     tree: CircleTree,
@@ -19,7 +19,7 @@ impl NearestLines {
         NearestLines { lines, tree }
     }
 
-    /// Number and distance of the line nearest to a point; of equally near lines, the first one.
+    /// Number and distance of the line nearest to a point; of equally near lines, the first line.
     pub fn of(&self, point: [f64; 2]) -> Option<(usize, f64)> {
         let mut best: Option<(f64, usize)> = None;
         self.tree.visit_near(
@@ -36,7 +36,7 @@ impl NearestLines {
         best.map(|(off, k)| (k, off))
     }
 
-    /// Numbers of the lines that have a point within `reach` of a place; some lines farther away may be among them.
+    /// Numbers of the lines that have a point within `reach` of a place; the list may contain some lines farther away.
     pub fn around(&self, place: [f64; 2], reach: f64) -> Vec<usize> {
         let mut found = Vec::new();
         self.tree.visit_near(

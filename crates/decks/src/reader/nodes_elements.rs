@@ -1,7 +1,7 @@
 //! `*NODE` and `*ELEMENT`.
 //!
 //! A line element, such as mesh generators write for boundary curves, names the side of a plane element with the same
-//! nodes; it has no stiffness and no section.
+//! nodes. A line element has no stiffness and no section.
 
 use super::collapsed::Collapsed;
 use super::context::Context;
@@ -244,7 +244,7 @@ impl MeshReading {
         Some(label)
     }
 
-    /// Whether no element has this label yet; a second element with the label is reported.
+    /// Whether no element has the given label yet; a second element with the label is reported.
     fn is_new(&mut self, label: u64, (first, span): (&Text, Span), cx: &mut Context) -> bool {
         let Some(line) = self.line_of(label) else {
             return true;
@@ -359,8 +359,8 @@ impl MeshReading {
         }
     }
 
-    /// Reports a mesh without nodes or elements. The place is their card; if there is none, it is the last nodes for
-    /// elements, the first keyword of the deck for nodes.
+    /// Reports a mesh without nodes or elements. The message stands at the card of nodes or elements; without such a
+    /// card it stands at the last nodes or at the first keyword of the deck.
     fn report_empty(&self, outline: &Outline, cx: &mut Context) {
         let mesh = &self.mesh_index.mesh;
         // rigid bodies of mass elements need no others
@@ -410,7 +410,7 @@ impl MeshReading {
         }
     }
 
-    /// The mesh without unused nodes and with line elements; nodes of `references` are used too.
+    /// The mesh without unused nodes and with line elements; the nodes in `references` count as used.
     fn finish(self, references: &BTreeSet<u64>, outline: &Outline, cx: &mut Context) -> MeshIndex {
         let MeshIndex { mesh, nodes, .. } = &self.mesh_index;
         let mut used = vec![false; mesh.node_count()];
@@ -486,7 +486,7 @@ fn row_of<'a>(label: u64, outline: &Outline<'a>, cx: &Context) -> Option<Line<'a
 }
 
 /// Fields of the element that starts in row `first`: rows are added until there are `count` fields, or the next row
-/// would give more.
+/// would give too many fields.
 fn element_fields<'a>(
     first: Line<'a>,
     rest: &mut (impl Iterator<Item = Line<'a>> + Clone),
@@ -509,8 +509,8 @@ fn element_fields<'a>(
 pub(super) enum ElementKind {
     /// A plane element.
     Plane(ElementType),
-    /// A line element of two nodes, which name a side of a plane element, or of three with the node in the middle of
-    /// the side.
+    /// A line element of two nodes, which name a side of a plane element, or of three nodes, the third of which is in
+    /// the middle of the side.
     Line(usize),
     /// A node with mass or inertia.
     PointElement(PointKind),
@@ -529,7 +529,7 @@ impl ElementKind {
         }
     }
 
-    /// Number of nodes of an element of this kind.
+    /// Number of nodes of an element of the kind.
     pub fn nodes(self) -> usize {
         match self {
             ElementKind::Plane(element_type) => element_type.topology().nodes,
@@ -541,7 +541,7 @@ impl ElementKind {
     }
 }
 
-/// The kind of elements with this name.
+/// The kind of elements with a given type name.
 pub(super) fn element_kind(name: Text, cx: &mut Context) -> Option<ElementKind> {
     let folded = name.name_key();
     match folded.as_str() {
@@ -609,8 +609,8 @@ pub(super) struct LineElement {
     pub span: Span,
 }
 
-/// Numbers the line elements after the plane ones; line elements that are no sides of plane elements are left out.
-/// `used` says for each node whether it is kept.
+/// Numbers the line elements after the plane elements; line elements that are no sides of plane elements are left out.
+/// `used` says for each node whether the mesh keeps it.
 pub(super) fn add_lines(
     lines: &[LineElement],
     used: &[bool],
@@ -687,8 +687,8 @@ fn report_plane_stress(mesh_index: &MeshIndex, cx: &mut Context) {
     }
 }
 
-/// Labels that may belong to nodes of rigid bodies or of equations; `groups` holds the node sets of `*NODE` by their
-/// keys, with the labels of their members.
+/// Labels that may belong to nodes of rigid bodies or of equations; `groups` holds, by key, the node sets of `*NODE`
+/// with the labels of their members.
 pub(super) fn labels_needed(
     outline: &Outline,
     groups: &[(&str, &LabelList)],

@@ -11,7 +11,7 @@ use std::cell::Cell;
 /// Two unit vectors, normal to each other.
 pub(super) type Axes = [[f64; 2]; 2];
 
-/// Help where the axes of an orientation cannot be used.
+/// Help for messages about an orientation whose axes cannot be used.
 const HELP: &str =
     "springs and dashpots take the points a, b and c of SYSTEM=RECTANGULAR in the plane";
 
@@ -25,7 +25,7 @@ pub(super) struct Orientations<'a> {
 }
 
 impl<'a> Orientations<'a> {
-    /// The orientations of a deck; their data lines are read when a spring or dashpot uses them.
+    /// The orientations of a deck; their data lines are read when a spring or dashpot uses the orientation.
     pub fn new(outline: &Outline<'a>, cx: &mut Context) -> Self {
         let mut all = Orientations {
             names: Names::of_parts("orientation"),
@@ -63,7 +63,7 @@ impl<'a> Orientations<'a> {
     }
 }
 
-/// The axes of a card; `user` is the place that uses them.
+/// The axes of a card; `user` is the place in the deck where these axes are used.
 fn axes(card: &Card, user: Span, cx: &mut Context) -> Option<Axes> {
     let system = card.choice("SYSTEM").unwrap_or("RECTANGULAR");
     let definition = card.choice("DEFINITION").unwrap_or("COORDINATES");

@@ -4,18 +4,18 @@ use super::context::Context;
 use crate::deck::{Card, Data, Level, Levels, Scope, Status};
 use crate::diagnostics::Code;
 
-/// A model card with the cards that belong to it, such as a material with its constants.
+/// A model card with the cards that belong to this card, such as a material with its constants.
 pub(crate) struct CardBlock<'a> {
     /// The card that begins the block.
     pub head: &'a Card,
-    /// The cards that belong to the first one.
+    /// The cards that belong to the card that begins the block.
     pub parts: Vec<&'a Card>,
     /// Index of the step that the block stands in.
     pub step: Option<usize>,
 }
 
 impl<'a> CardBlock<'a> {
-    /// The cards of the block with this keyword.
+    /// The cards of the block with a given keyword.
     pub fn parts_of(&self, keyword: &str) -> Vec<&'a Card> {
         let parts = self.parts.iter().copied();
         parts.filter(|card| card.keyword.name == keyword).collect()
@@ -63,12 +63,12 @@ impl<'a> Outline<'a> {
         outline
     }
 
-    /// Cards with this keyword that begin blocks of the model.
+    /// Cards with a given keyword that begin blocks of the model.
     pub fn model_cards(&self, keyword: &str) -> Vec<&'a Card> {
         self.blocks(keyword).map(|block| block.head).collect()
     }
 
-    /// Blocks that begin with this keyword.
+    /// Blocks that begin with a given keyword.
     pub fn blocks(&self, keyword: &str) -> impl Iterator<Item = &CardBlock<'a>> {
         self.model
             .iter()
@@ -101,7 +101,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// Places a card that belongs to no block, according to the levels at which it may stand.
+    /// Finds the place of a card that belongs to no block, by the levels at which the card may stand.
     fn place_at(&mut self, card: &'a Card, levels: Levels, cx: &mut Context) {
         let is_in_step = self.open && levels.has(self.step_level());
         if is_in_step && levels.hold_from_the_start() {
@@ -166,13 +166,13 @@ impl<'a> Outline<'a> {
         self.in_model = false;
     }
 
-    /// The block that the last card stands in, if it begins with this keyword.
+    /// The block in which the last card stands, if this block begins with the given keyword.
     fn open_block(&mut self, head: &str) -> Option<&mut CardBlock<'a>> {
         let last = self.model.last_mut().filter(|_| self.in_model);
         last.filter(|block| block.head.keyword.name == head)
     }
 
-    /// Whether the last card belongs to a step and has this keyword.
+    /// Whether the last card belongs to a step and has a given keyword.
     fn is_after(&self, of_step: &str) -> bool {
         let step = self.steps.last().filter(|_| self.open && !self.in_model);
         let last = step.and_then(|step| step.cards.last());

@@ -48,7 +48,7 @@ impl Requests {
         }
     }
 
-    /// `*RESTART, WRITE`: checkpoints from this step on.
+    /// `*RESTART, WRITE`: checkpoints from the current step on.
     pub fn restart(&mut self, card: &Card, cx: &mut Context) {
         if !card.has("WRITE") {
             return;
@@ -133,7 +133,7 @@ impl Requests {
         self.histories.card(card, family, targets.sets, cx);
     }
 
-    /// Sets the times of frames, if the card gives any.
+    /// Sets the times of frames, if the card gives times.
     fn when(&mut self, card: &Card, cx: &mut Context) {
         let given: Vec<&str> = WHEN.into_iter().filter(|name| card.has(name)).collect();
         if let [first, second, ..] = given[..] {
@@ -148,14 +148,14 @@ impl Requests {
         }
     }
 
-    /// Checks the times on a card for histories; they have no effect, because histories hold every increment.
+    /// Checks the times on a card for histories; these times have no effect, because histories hold every increment.
     fn check_when(&self, card: &Card, cx: &mut Context) {
         for name in WHEN.into_iter().filter(|name| card.has(name)) {
             self.asked(name, card, cx);
         }
     }
 
-    /// Frames that a parameter requests, and its time points if they are in total time.
+    /// Frames that a parameter requests, and the time points that it names if these are in total time.
     fn asked(
         &self,
         name: &str,
@@ -207,7 +207,8 @@ const WHEN: [&str; 4] = [
     "TIME POINTS",
 ];
 
-/// Reads FREQUENCY: frames after every so many increments; 0 means only at the end of the step.
+/// Reads FREQUENCY: frames after every multiple of this number of increments; 0 means a frame only at the end of the
+/// step.
 fn frequency(card: &Card, cx: &mut Context) -> Option<Frames> {
     match count(card, "FREQUENCY", 0, cx)? {
         0 => Some(Frames::Count(1)),
@@ -333,7 +334,7 @@ impl Histories {
         }
     }
 
-    /// Of the fields of nodes or elements that a card names, adds those that are written on request only.
+    /// Adds those fields of nodes or elements named by a card that are written on request only.
     pub(super) fn fields(&mut self, card: &Card) {
         if card.keyword.name.starts_with("CONTACT") {
             return;
@@ -381,7 +382,7 @@ impl MemberKind {
     }
 }
 
-/// The dof that a card names.
+/// The dof that a card `*MONITOR` names.
 pub(super) fn monitored(card: &Card, targets: Targets, cx: &mut Context) -> Option<usize> {
     let node = card.required("NODE", cx.d);
     let dof = card.required("DOF", cx.d);
@@ -404,7 +405,7 @@ pub(super) fn monitored(card: &Card, targets: Targets, cx: &mut Context) -> Opti
     }
 }
 
-/// Largest number of times that a row with GENERATE may give, less one.
+/// Largest number of intervals between the times of a row with GENERATE.
 const MOST_TIMES: f64 = 1e6;
 
 /// Named lists of times.

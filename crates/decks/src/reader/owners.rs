@@ -1,6 +1,6 @@
-//! Which card decides where a node goes: a table of all cards that make nodes and displacements follow others. If two
-//! cards decide the same displacement, or if a load, support or velocity acts on a displacement that does not exist, an
-//! error names both cards.
+//! A table of all cards that make nodes and displacements follow others; the table tells which card decides the motion
+//! of a node. If two cards decide the same displacement, or if a load, support or velocity acts on a displacement that
+//! does not exist, an error names both cards.
 
 use super::actions::{Action, Actions};
 use super::boundary::Targets;
@@ -14,7 +14,7 @@ use crate::diagnostics::{Added, Code, Span};
 use crate::model::{Connector, ConnectorDirection, ConnectorLaw, Equation, Tie};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Constraints that make nodes follow others, without those of `*EQUATION`.
+/// Constraints that make nodes follow other nodes, except the equations of `*EQUATION`.
 #[derive(Clone, Copy)]
 pub(crate) struct Constraints<'a> {
     pub ties: &'a Ties,
@@ -27,24 +27,24 @@ pub(crate) struct Constraints<'a> {
 pub(crate) enum Owner<'a> {
     /// The node of a pre-tension section, whose only displacement has direction 1.
     Section(&'a Cut),
-    /// Nodes that move with a reference node.
+    /// A rigid body or coupling, whose nodes move with a reference node.
     Body(&'a Rigid),
-    /// Slave nodes that follow a master.
+    /// A tie, whose slave nodes follow a master.
     Tie(&'a Tie, Span),
-    /// Nodes that are joined, or that follow the mean of others.
+    /// A link, whose nodes are joined or follow the mean of other nodes.
     Link(&'a Link),
-    /// The ends of a spring or dashpot.
+    /// A spring or dashpot, with its ends.
     Connector(&'a ConnectorElement),
-    /// A node with mass.
+    /// A point element, which has a node with mass.
     Point(&'a PointElement),
-    /// The first term of an equation.
+    /// A card `*EQUATION`, by the first term of an equation.
     Equation(Span),
-    /// A prescribed motion.
+    /// A card that prescribes a motion.
     Support(Span),
 }
 
 impl Owner<'_> {
-    /// What messages call the card, as in `the rigid body TOP`.
+    /// Name of the card in messages, as in `the rigid body TOP`.
     pub fn title(self) -> String {
         match self {
             Owner::Section(_) => "the *PRE-TENSION SECTION".to_owned(),
@@ -76,7 +76,7 @@ impl Owner<'_> {
         }
     }
 
-    /// Code of errors that concern this card.
+    /// Code of messages about errors that concern the card.
     pub fn code(self) -> Code {
         match self {
             Owner::Section(_) => Code::PreTension,
@@ -90,14 +90,14 @@ impl Owner<'_> {
         }
     }
 
-    /// Reports, at the place of this owner, that it contradicts the owner `other`.
+    /// Reports, at the place of an owner, that this owner contradicts the owner `other`.
     pub fn contradicts<'d>(self, other: Owner, message: String, cx: &'d mut Context) -> Added<'d> {
         cx.error(self.code(), self.span(), message)
             .other(other.title(), other.span())
     }
 }
 
-/// Reports nodes that two cards move: a node may ride on one body only, and the node of a pre-tension section may
+/// Reports nodes that two cards move: a node may move with one body only, and the node of a pre-tension section may
 /// belong to nothing else.
 pub(crate) fn check_nodes(
     rigid_bodies: &[Rigid],
@@ -189,7 +189,8 @@ fn report_shared(node: usize, [other, own]: [Owner; 2], mesh_index: &MeshIndex, 
     own.contradicts(other, message, cx).help(help);
 }
 
-/// Reports actions on displacements that do not exist because no element, body, spring, dashpot or equation has them.
+/// Reports actions on displacements that do not exist because no element, body, spring, dashpot or equation has these
+/// displacements.
 pub(crate) fn check_actions(
     actions: [&Actions; 3],
     targets: Targets,

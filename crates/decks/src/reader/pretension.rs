@@ -1,5 +1,5 @@
 //! `*PRE-TENSION SECTION`: a body is cut along a surface, and equations let the two sides of the cut overlap by one
-//! additional displacement; a force tightens this overlap, and a support locks it. See docs/theory/contact.md,
+//! additional displacement. A force tightens the overlap, and a support locks it. See docs/theory/contact.md,
 //! Pre-tension.
 
 use super::context::Context;
@@ -19,14 +19,14 @@ pub(crate) struct Cut {
     pub node: usize,
     /// Direction in which the side of the surface moves: a unit vector that points out of its elements.
     normal: [f64; 2],
-    /// Pairs of a node of the surface and the node of the elements behind it at the same place.
+    /// Pairs of a node of the surface and the node, at the same place, of the elements behind the surface.
     pairs: Vec<[usize; 2]>,
     /// Place of the card.
     pub span: Span,
 }
 
 impl Cut {
-    /// Equations of the nodes behind the cut, u_b = u_a - q n, eq. (3.16).
+    /// Equations u_b = u_a - q n of the nodes b behind the cut, eq. (3.16).
     pub fn equations(&self) -> impl Iterator<Item = Equation> + '_ {
         let of_pair = |&[a, b]: &[usize; 2]| {
             [0, 1].map(|i| {
@@ -116,8 +116,8 @@ fn faces(
     Some(found)
 }
 
-/// Smallest cosine of the angle between the normal of the data line and that of the faces; with a smaller cosine the
-/// two sides would slip on each other.
+/// Smallest cosine of the angle between the normal of the data line and the normal of the faces; with a smaller cosine
+/// the two sides would slip on each other.
 const TANGENT: f64 = 0.01;
 
 /// The normal of a section, out of the elements of its faces: the normal of the data line, with either sign, or else

@@ -11,7 +11,7 @@ use crate::diagnostics::{Code, Span, shown};
 use crate::model::{Mesh, RigidPart, SurfaceKind};
 use std::collections::BTreeSet;
 
-/// Rigid surfaces, elements and nodes, and the node that they move with.
+/// Rigid surfaces, elements and nodes, and the node with which they move.
 #[derive(Default)]
 pub(crate) struct Rigid {
     /// Surfaces, element sets and node sets that cards make parts of the body; empty for coupled nodes.
@@ -39,7 +39,7 @@ pub(crate) struct Rigid {
 }
 
 impl Rigid {
-    /// A body of nodes that ride on a reference node.
+    /// A body of nodes that move with a reference node.
     pub fn of_coupling(
         name: &str,
         reference: usize,
@@ -103,7 +103,7 @@ impl Rigid {
         self.is_coupling
     }
 
-    /// What messages call the body, as in `the rigid body TOP`.
+    /// Name of the body in messages, as in `the rigid body TOP`.
     pub fn title(&self) -> String {
         match self.is_coupling {
             true => format!("the coupling {}", self.name),
@@ -190,7 +190,7 @@ pub(crate) fn read(outline: &Outline, lookup: Lookup, cx: &mut Context) -> Vec<R
     all
 }
 
-/// Whether an earlier card has made a body of the same surface or set; this is reported.
+/// Whether an earlier card has made a body of the same surface or set; such a repetition is reported.
 fn is_repeated(rigid: &Rigid, earlier: &[Rigid], cx: &mut Context) -> bool {
     let other = |part: &RigidPart| earlier.iter().find(|other| other.parts.contains(part));
     let Some(other) = rigid.parts.iter().find_map(other) else {
@@ -208,7 +208,7 @@ fn is_repeated(rigid: &Rigid, earlier: &[Rigid], cx: &mut Context) -> bool {
 
 /// Masses of point elements.
 pub(super) struct PointMasses {
-    /// Masses of the point elements, 0 for those without a mass (mass).
+    /// Masses of the point elements, 0 for elements without a mass (mass).
     pub all: Vec<f64>,
     /// Masses at nodes of no rigid body (index of the node, mass).
     pub free: Vec<(usize, f64)>,
@@ -362,7 +362,7 @@ impl Rigid {
         self.add_part(RigidPart::Elements(name.clone()), &name, nodes);
     }
 
-    /// Adds rigid lines with their nodes, and the surfaces that are made of them.
+    /// Adds rigid lines with their nodes, and the surfaces that are made of rigid lines.
     fn add_lines(
         &mut self,
         field: Text,
@@ -418,7 +418,7 @@ impl Rigid {
         Some(())
     }
 
-    /// Adds a part with its nodes; the first one gives the body its name.
+    /// Adds a part with its nodes; the first part gives the body its name.
     fn add_part(&mut self, part: RigidPart, name: &str, nodes: Vec<usize>) {
         if self.parts.is_empty() {
             name.clone_into(&mut self.name);
@@ -439,7 +439,7 @@ impl Rigid {
     }
 }
 
-/// The first body on which one of these nodes rides.
+/// The first body with which one of the given nodes moves.
 pub(crate) fn carrier<'a>(nodes: &[usize], rigid_bodies: &'a [Rigid]) -> Option<&'a Rigid> {
     let rides = |rigid: &&Rigid| {
         nodes
@@ -449,12 +449,12 @@ pub(crate) fn carrier<'a>(nodes: &[usize], rigid_bodies: &'a [Rigid]) -> Option<
     rigid_bodies.iter().find(rides)
 }
 
-/// Dof of the angle of the rigid body with this number among all bodies of a mesh.
+/// Dof of the angle of the rigid body with a given number among all bodies of a mesh.
 pub(super) fn angle_dof(number: usize, mesh: &Mesh) -> usize {
     2 * (mesh.node_count() + 2 * number + 1)
 }
 
-/// Dof of the angle of the rigid body whose reference node this is.
+/// Dof of the angle of the rigid body with the given reference node.
 pub(crate) fn angle_at(node: usize, rigid_bodies: &[Rigid], mesh: &Mesh) -> Option<usize> {
     let number = rigid_bodies
         .iter()

@@ -16,7 +16,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Adds the motion of the rigid bodies to the steps; returns the bodies of the model. Nodes of bodies that do not turn
 /// get the supports of their reference nodes, until [`leave_to_bodies`] removes them. `supports` and the velocities
-/// contain the places of their rows, for messages.
+/// contain the places of their rows in the deck, for messages.
 pub(crate) fn complete(
     rigid_bodies: &[Rigid],
     (mesh_index, supports): (&MeshIndex, &Supports),
@@ -74,8 +74,8 @@ pub(crate) fn leave_to_bodies(model: &mut Model) {
     }
 }
 
-/// Reports equations at nodes of bodies that turn; warns that landing return and redistributed mass leave such bodies
-/// out. In a model of revolution, rigid bodies may only move along the axis.
+/// Reports equations at nodes of bodies that turn; warns that landing return and redistributed mass do not apply to
+/// bodies that turn. In a model of revolution, rigid bodies may only move along the axis.
 pub(crate) fn check(
     rigid_bodies: &[Rigid],
     bodies: &[RigidBody],
@@ -132,8 +132,8 @@ pub(crate) fn check(
 }
 
 impl Rigid {
-    /// Whether the body moves in directions that are not prescribed in a step: it has mass of its own or of its nodes,
-    /// or it is free in a static step, which needs no mass.
+    /// Whether the body moves in directions that are not prescribed in a step: this needs mass of the body or of its
+    /// nodes, except in a static step.
     fn moves_freely(&self, step: &Step) -> bool {
         let is_free = |direction: &usize| step.motion_of(2 * self.reference + direction).is_none();
         self.has_mass()
@@ -168,7 +168,8 @@ fn report_moments(rigid: &Rigid, angle: usize, steps: &[Step], cx: &mut Context)
     }
 }
 
-/// Largest difference between the velocity of a node and that of its body, relative to the largest velocity.
+/// Largest difference between the velocity of a node and the velocity of its body at this place, relative to the
+/// largest velocity.
 const SAME_VELOCITY: f64 = 1e-9;
 
 /// Reports velocities of nodes of a body that differ from the motion of its reference node and angle.
@@ -210,7 +211,7 @@ fn report_own_velocities(
 }
 
 /// Completes the supports of a body that turns: if the body has no mass, its angle is held unless the deck prescribes
-/// it.
+/// the angle.
 fn complete_turning(
     rigid: &Rigid,
     angle: usize,
@@ -291,7 +292,7 @@ fn report_empty_coupling(
     false
 }
 
-/// The motion of an angle that does not change.
+/// The prescribed motion of an angle that stays constant.
 const STILL: SupportMotion = SupportMotion::Rate {
     rate: Rate::Velocity,
     value: 0.0,

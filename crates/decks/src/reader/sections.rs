@@ -62,7 +62,7 @@ fn section(card: &Card, materials: &Names, cx: &mut Context) -> Option<Section> 
 }
 
 impl Properties {
-    /// Gives a section to its elements; returns whether all of the card could be read.
+    /// Gives a section to its elements; returns whether the whole card could be read.
     fn assign(
         &mut self,
         section: Option<Section>,
@@ -159,7 +159,7 @@ fn report_mean_dilatation(
     }
 }
 
-/// Reports elements without section, unless a section could not be read.
+/// Reports elements without section, unless the deck has a section that could not be read.
 fn report_without_section(complete: bool, mesh_index: &MeshIndex, cx: &mut Context) {
     let elements = || mesh_index.mesh.elements.iter();
     let bare = elements().position(|element| element.section == NO_SECTION);
@@ -176,8 +176,8 @@ fn report_without_section(complete: bool, mesh_index: &MeshIndex, cx: &mut Conte
     }
 }
 
-/// Poisson's ratio at small strains from which on fully integrated elements lock in plane strain; there, lambda / mu =
-/// 2 nu / (1 - 2 nu) is 9.
+/// Poisson's ratio at small strains from which on fully integrated elements lock in plane strain; at this value lambda
+/// / mu = 2 nu / (1 - 2 nu) is 9.
 const LOCKING: f64 = 0.45;
 
 impl Properties {

@@ -16,7 +16,7 @@ pub(crate) struct Sets {
     pub node_names: Names,
     /// Node sets in the order of their names.
     pub nodes: Vec<Set>,
-    /// Names of node sets with UNSORTED, whose order of members is lost.
+    /// Names of node sets with UNSORTED; the given order of their members is lost.
     unsorted: BTreeSet<String>,
     /// Names of the element sets.
     pub element_names: Names,
@@ -40,7 +40,7 @@ impl Sets {
         self.unsorted.contains(&set)
     }
 
-    /// The node, or the nodes of the set, that a field names.
+    /// The node that a field names, or the nodes of the set that the field names.
     pub fn nodes_of(&self, field: Text, mesh_index: &MeshIndex, cx: &mut Context) -> Vec<usize> {
         match cx.is_number(field) {
             true => mesh_index.nodes.find(field, cx).into_iter().collect(),
@@ -48,8 +48,8 @@ impl Sets {
         }
     }
 
-    /// The node that a field names, or the only node of the set; a set with other than one node is reported with `code`
-    /// and `help`. A node that is left out gives `None`.
+    /// The node that a field names, or the only node of the set; a set with no node or several nodes is reported with
+    /// `code` and `help`. `None` if the node is left out.
     pub fn single_node(
         &self,
         field: Text,
@@ -172,7 +172,8 @@ impl OtherElements {
     }
 }
 
-/// Splits members of a set into plane elements (indices) and other elements; indices number one kind after the other.
+/// Splits members of a set into plane elements (indices) and other elements; indices count one kind of element after
+/// the other.
 fn split(members: Vec<usize>, mesh_index: &MeshIndex) -> (Vec<usize>, OtherElements) {
     let (count, lines) = (mesh_index.mesh.elements.len(), &mesh_index.lines);
     let of_points = count + lines.len();
@@ -262,15 +263,15 @@ pub(crate) fn read(outline: &Outline, mesh_index: &MeshIndex, cx: &mut Context) 
     sets
 }
 
-/// Where a set is first defined: whether in a deck that continues an earlier job, and in which step (`None` for the
-/// model).
+/// Place where a set is first defined: whether in a deck that continues an earlier job, and in which step (`None` for
+/// the model).
 type Age = (bool, Option<usize>);
 
-/// A set before the sets that it lists are added.
+/// A set to which the members of listed sets have not been added yet.
 struct Draft {
     span: Span,
     age: Age,
-    /// Members in any order; some may appear several times.
+    /// Members in any order; a member may appear several times.
     members: Vec<usize>,
     children: Vec<usize>,
 }

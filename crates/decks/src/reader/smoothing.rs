@@ -22,7 +22,7 @@ pub(super) fn read(outline: &Outline, surfaces: &Surfaces, cx: &mut Context) -> 
     all
 }
 
-/// Reads a row `slave, master, CIRCUMFERENTIAL, x, y`; returns the circles of the surfaces that it names.
+/// Reads a row `slave, master, CIRCUMFERENTIAL, x, y`; returns the circles of the named surfaces.
 fn circles(row: Line, surfaces: &Surfaces, cx: &mut Context) -> Option<Vec<Circle>> {
     row.at_most(5, cx.d);
     let named = (0..2).filter_map(|i| row.get(i));

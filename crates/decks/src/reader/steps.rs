@@ -18,7 +18,7 @@ use crate::model::{
     Support,
 };
 
-/// Largest number of increments of a step: computing them would last eleven days at a microsecond each.
+/// Largest number of increments of a step: so many increments would last eleven days at a microsecond each.
 const MOST_INCREMENTS: f64 = 1e12;
 
 /// Everything that the steps of a deck define.
@@ -37,7 +37,7 @@ pub(crate) struct Steps {
     pub forces: Actions,
 }
 
-/// Reads all steps; `guide` is a sensible increment, if one is known.
+/// Reads all steps; `guide` is a sensible increment; `None` if no such increment is known.
 pub(crate) fn read(
     outline: &Outline,
     targets: Targets,
@@ -271,7 +271,7 @@ impl StepReader<'_> {
     }
 }
 
-/// Reports overlaps to be pressed out in a step with IMPACT TIME=EVENT: events are found for surfaces without an
+/// Reports overlaps that a step with IMPACT TIME=EVENT is to remove: events are found only for surfaces without an
 /// allowed overlap.
 fn check_fit(step: &Step, cards: &StepCards, cx: &mut Context) {
     let has_events =
@@ -291,15 +291,15 @@ fn named<'a>(cards: &StepCards<'a>, keyword: &str) -> Vec<&'a Card> {
 /// Largest truncation error of an increment, relative to the displacements of the step so far.
 pub(crate) const TRUNCATION_ERROR: f64 = 1e-4;
 
-/// Default bounds of the increments of a dynamic step without DIRECT. The smallest increment is the lesser of
-/// [`LEAST_PART`] of the first increment and [`LEAST_DYNAMIC`] of the duration; the largest is the first increment or,
-/// if longer, [`LARGEST_DYNAMIC`] of the duration.
+/// Default bounds of the increments of a dynamic step without DIRECT. The smallest increment is [`LEAST_PART`] times
+/// the first increment, or [`LEAST_DYNAMIC`] times the duration if this is less. The largest increment is the first
+/// increment, or [`LARGEST_DYNAMIC`] times the duration if this is longer.
 const LEAST_PART: f64 = 1.0 / 1024.0;
 const LEAST_DYNAMIC: f64 = 1e-5;
 const LARGEST_DYNAMIC: f64 = 0.1;
 
-/// Tolerance of the truncation error for HALFINC SCALE FACTOR=1. The default of this factor (10000 with contacts, 1000
-/// without) corresponds to [`TRUNCATION_ERROR`].
+/// Tolerance of the truncation error for HALFINC SCALE FACTOR=1. The default of the factor (10000 with contacts, 1000
+/// without contacts) corresponds to [`TRUNCATION_ERROR`].
 pub(crate) fn tolerance_of_factor(has_contacts: bool) -> f64 {
     TRUNCATION_ERROR / if has_contacts { 1e4 } else { 1e3 }
 }
@@ -422,7 +422,8 @@ fn truncation_error(
 /// Default of the smallest increment of a static step, relative to its duration.
 const LEAST_STATIC: f64 = 1e-5;
 
-/// Reads a row `[dt[, T[, smallest dt[, largest dt]]]]` of a static step; the default of T is 1, that of dt is T.
+/// Reads a row `[dt[, T[, smallest dt[, largest dt]]]]` of a static step; the default of T is 1, and the default of dt
+/// is T.
 fn static_increments(card: &Card, cx: &mut Context) -> Option<Increments> {
     let direct = is_direct(card);
     let incrementation = match direct {
@@ -470,8 +471,9 @@ fn time_or(row: Line, index: usize, default: f64, cx: &mut Context) -> Option<f6
     Some(if time == 0.0 { default } else { time })
 }
 
-/// The first increment of a dynamic step. If it is not given and increments are automatic, it is `guide`, the time of a
-/// wave through the shortest side of an element, within bounds relative to the duration.
+/// The first increment of a dynamic step. If the deck does not give the first increment and increments are automatic,
+/// the first increment is `guide`, the time of a wave through the shortest side of an element, within bounds relative
+/// to the duration.
 fn first_increment(
     row: Line,
     (direct, period): (bool, f64),
@@ -596,7 +598,7 @@ pub(crate) const SOLVER: Choice<SolverChoice> = Choice(
 );
 
 impl<T: Copy + PartialEq> Choice<T> {
-    /// Changes a setting to the word on a card, if the card has this parameter.
+    /// Changes a setting to the word on a card, if the card has the parameter of the setting.
     fn set(&self, card: &Card, setting: &mut T) {
         let typed = card.choice(self.0);
         if let Some((_, chosen)) = self.1.iter().find(|(word, _)| Some(*word) == typed) {
@@ -630,9 +632,9 @@ pub(crate) fn apply_settings(card: &Card, settings: &mut Settings, cx: &mut Cont
     check_scheme(card, settings, cx);
 }
 
-/// Reports LANDING=RETURN and CONTACT MASS=REDISTRIBUTED without the energy-momentum scheme. Landing return needs this
-/// scheme because its contact force loses exactly Pn g0 at a landing; nodes without mass need it because they have
-/// neither end rows nor impulses.
+/// Reports LANDING=RETURN and CONTACT MASS=REDISTRIBUTED without the energy-momentum scheme. Landing return needs the
+/// energy-momentum scheme because the contact force there loses exactly the energy Pn g0 at a landing. Nodes without
+/// mass need the scheme because end rows and impulses do not work for such nodes.
 fn check_scheme(card: &Card, settings: &Settings, cx: &mut Context) {
     if settings.scheme == Scheme::EnergyMomentum {
         return;
@@ -652,7 +654,7 @@ fn check_scheme(card: &Card, settings: &Settings, cx: &mut Context) {
     }
 }
 
-/// Reads the scheme, whose weights must make it stable: theta2 >= theta1 >= 1/2.
+/// Reads the scheme, whose weights must make the scheme stable: theta2 >= theta1 >= 1/2.
 fn scheme(card: &Card, before: Scheme, cx: &mut Context) -> Scheme {
     let (old1, old2) = match (card.choice("SCHEME"), before) {
         (Some("SS22"), Scheme::EnergyMomentum) => (1.0, 1.0),
@@ -675,7 +677,7 @@ fn scheme(card: &Card, before: Scheme, cx: &mut Context) -> Scheme {
     Scheme::Ss22 { theta1, theta2 }
 }
 
-/// Reports a step that changes CONTACT MASS: the first step decides for all.
+/// Reports a step that changes CONTACT MASS: the first step decides for all steps.
 pub(crate) fn check_contact_mass(
     card: &Card,
     [before, now]: [ContactMass; 2],

@@ -19,9 +19,9 @@ pub(crate) struct Surfaces {
     pub all: Vec<Surface>,
     /// Rigid surfaces and their places.
     pub rigid: Vec<(usize, Span)>,
-    /// Rigid surfaces (indices) that are made of rigid lines, with the indices of these lines.
+    /// Rigid surfaces (indices) that are made of rigid lines, with the indices of the lines.
     pub of_lines: Vec<(usize, Vec<usize>)>,
-    /// Points of the rigid surfaces, which become nodes after those of the mesh.
+    /// Points of the rigid surfaces, which become nodes behind the nodes of the mesh.
     pub rigid_points: Vec<[f64; 2]>,
 }
 
@@ -91,7 +91,8 @@ pub(crate) fn read(
 }
 
 /// Rigid lines that the rows of a card name, with their ends. The rigid body lies on the right of the direction from
-/// end to end, which for SPOS runs from the first node to the second. Reports rows of other elements on the same card.
+/// end to end, which for SPOS runs from the first node to the second. The function reports rows of the card that name
+/// other elements.
 fn rigid_lines(
     card: &Card,
     mesh_index: &MeshIndex,
@@ -198,7 +199,7 @@ fn faces(
     faces
 }
 
-/// Faces of elements that a card `*SURFACE` names; faults of the card are reported elsewhere.
+/// Faces of elements that a card `*SURFACE` names; faults of the card are reported by another function.
 pub(super) fn named_faces_of(
     card: &Card,
     mesh_index: &MeshIndex,
@@ -285,7 +286,7 @@ pub(crate) fn side_count(mesh: &Mesh, element: usize) -> usize {
     mesh.elements.get(element).map_or(0, |e| e.side_count())
 }
 
-/// Exterior sides of these elements, in order; sides on the axis of bodies of revolution are not among them.
+/// Exterior sides of given elements, in order; the list leaves out sides on the axis of bodies of revolution.
 fn exterior_faces(elements: &[usize], at_nodes: &ElementsAtNodes, mesh: &Mesh) -> Vec<Face> {
     let sides =
         |&element: &usize| (0..side_count(mesh, element)).map(move |side| Face { element, side });
@@ -323,12 +324,11 @@ pub(crate) type Found<'a> = (usize, &'a Surface, Span);
 
 /// Largest angle that a chord of an arc subtends.
 const CHORD: f64 = std::f64::consts::PI / 180.0;
-/// Largest relative difference of an arc's radii at its ends, and smallest difference of its angle from 180 degrees
-/// (rad).
+/// Largest relative difference of the radii of an arc at its two ends; also the smallest difference of the angle of an
+/// arc from 180 degrees (rad).
 const ARC_ROUND_OFF: f64 = 1e-4;
 
-/// A rigid profile: points and the sides between them, with the rigid body on the right of each
-/// side.
+/// A rigid profile: points and the sides between these points, with the rigid body on the right of each side.
 #[derive(Default)]
 pub(crate) struct Profile {
     /// Points in the order of the rows.
@@ -472,7 +472,7 @@ impl Profile {
         self.points.push(at);
     }
 
-    /// Drops the last point if no side begins or ends there, as after a START without a LINE or CIRCL.
+    /// Drops the last point if no side begins or ends at this point, for example after a START without a LINE or CIRCL.
     fn drop_lone_point(&mut self) {
         let is_last = |end: &usize| end + 1 == self.points.len();
         if !self.sides.iter().rev().take(1).flatten().any(is_last) {
@@ -480,7 +480,7 @@ impl Profile {
         }
     }
 
-    /// Adds a chord to a point, which is a new one or the first point of the chain again.
+    /// Adds a chord to a point, which is a new point or the first point of the chain.
     fn side_to(&mut self, to: [f64; 2]) {
         let closes = self.points.get(self.start) == Some(&to);
         let next = if closes {
@@ -536,8 +536,8 @@ impl Profile {
     }
 }
 
-/// Reads the point in the fields `index` and `index + 1` of a row with at most `count` fields, and places it with the
-/// instance of the row.
+/// Reads the point in the fields `index` and `index + 1` of a row with at most `count` fields, and places the point
+/// with the instance of the row.
 fn point(row: Line, index: usize, count: usize, cx: &mut Context) -> Option<[f64; 2]> {
     if index == 1 {
         row.at_most(count, cx.d);

@@ -11,7 +11,7 @@ use crate::deck::{Card, Line};
 use crate::diagnostics::Code;
 use crate::model::{Amplitude, Load, Material, Model, NodeTemperature, Variation};
 
-/// Reads initial temperatures, one for every node; empty if the deck gives none.
+/// Reads initial temperatures, one for every node; empty if the deck gives no initial temperatures.
 pub(super) fn initial(outline: &Outline, targets: Targets, cx: &mut Context) -> Vec<f64> {
     let mut all = Vec::new();
     for card in outline.model_cards("INITIAL CONDITIONS") {
@@ -53,7 +53,7 @@ fn row_of_nodes(row: Line, targets: Targets, cx: &mut Context) -> Option<(Vec<us
     Some((nodes?, value?))
 }
 
-/// Temperatures that differ from the initial ones, by their nodes.
+/// Temperatures that differ from the initial temperatures, by node.
 #[derive(Default)]
 pub(super) struct TemperatureHistory {
     initial: Vec<f64>,
@@ -133,7 +133,7 @@ impl TemperatureHistory {
     }
 }
 
-/// The temperatures that a step hands on to the next one.
+/// The temperatures that a step hands on to the next step.
 pub(crate) fn carried_temperatures(
     loads: &[Load<NodeTemperature>],
     initial: &[f64],

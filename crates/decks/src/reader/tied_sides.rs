@@ -6,11 +6,11 @@ use crate::model::{Follows, Mesh, SideNodes, Surface, SurfaceKind, TiedLine, Tie
 use crate::vectors::{difference, distance, dot};
 use smallvec::SmallVec;
 
-/// Gauss points of a cell, -1 <= r <= 1, of weight 1. These points integrate products of two linear functions and the
-/// radius exactly.
+/// Gauss points of a cell, -1 <= r <= 1; each has the weight 1. The Gauss points integrate products of two linear
+/// functions and the radius exactly.
 const GAUSS: [f64; 2] = [-0.577_350_269_189_625_8, 0.577_350_269_189_625_8];
 
-/// Distance of two ends of cells, relative to the length of the line, below which they are one end.
+/// Distance of two ends of cells, relative to the length of the line, below which the two ends count as one.
 const ROUND_OFF: f64 = 1e-9;
 
 /// Cosine of the largest angle between a slave line and the line of the master that it follows: 45 degrees.
@@ -102,7 +102,7 @@ fn places(line: &[Vertex; 2]) -> [[f64; 2]; 2] {
     [line[0].place, line[1].place]
 }
 
-/// The sides of a slave surface that face the master and whose nodes are all tied or belong to the master, too.
+/// The sides of a slave surface that face the master and whose nodes are all tied or belong also to the master.
 pub(super) fn read(
     [slave, master]: [&Surface; 2],
     mesh: &Mesh,
@@ -151,10 +151,10 @@ fn tied_line([p, q]: [[f64; 2]; 2], master: &Master, is_ring: bool) -> Option<Ti
     sums.dual()
 }
 
-/// Sums over the points q of a slave line, for its ends j and k.
+/// Sums over the points q of a slave line, for the ends j and k of the line.
 #[derive(Default)]
 struct Sums {
-    /// Mass matrix of the hats, M_jk = sum_q w_q N_j N_k.
+    /// Mass matrix of the hat functions N, M_jk = sum_q w_q N_j N_k.
     m: [[f64; 2]; 2],
     /// Weights of the ends, D_j = sum_q w_q N_j.
     d: [f64; 2],
@@ -179,7 +179,7 @@ impl Sums {
         }
     }
 
-    /// Replaces the hats N by the dual functions psi, for which sum_q w_q psi_j N_k = delta_jk D_j:
+    /// Replaces the hat functions N by the dual functions psi, for which sum_q w_q psi_j N_k = delta_jk D_j:
     ///
     /// ```text
     /// psi = D M^-1 N      eq. (3.33)

@@ -1,6 +1,6 @@
 //! `*TIE`: slave nodes are moved onto the segments of the master surface that they face, or keep their place beside
-//! them. Tied nodes follow these segments, or the master below the slave faces, at all times. See
-//! docs/theory/contact.md, Ties.
+//! these segments. Tied nodes follow the segments that they face, or the master below the slave faces, at all times.
+//! See docs/theory/contact.md, Ties.
 
 use super::context::Context;
 use super::mesh_index::MeshIndex;
@@ -28,8 +28,8 @@ pub(crate) struct Ties {
     pub all: Vec<Tie>,
     /// Places of the ties.
     pub spans: Vec<Span>,
-    /// Nodes of both surfaces with the segments that they are tied to or lie at; contact between such a node and
-    /// segment is left out.
+    /// Nodes of both surfaces, each with the segments to which the node is tied or at which it lies; contact between
+    /// such a node and segment is left out.
     bonds: Vec<(usize, Segment)>,
 }
 
@@ -99,7 +99,7 @@ pub(super) fn read(
     ties
 }
 
-/// The rows of a card.
+/// The rows of a card `*TIE`.
 fn rows_of(
     card: &Card,
     names: &mut Names,
@@ -142,7 +142,7 @@ fn rows_of(
     rows
 }
 
-/// Which nodes a card ties; `None` after a reported error.
+/// Choice of the nodes that a card ties; `None` after a reported error.
 fn reach(card: &Card, sets: &Sets, cx: &mut Context) -> Option<TieReach> {
     if let Some(field) = card.value("TIED NSET") {
         if card.has("POSITION TOLERANCE") {
@@ -162,8 +162,8 @@ fn reach(card: &Card, sets: &Sets, cx: &mut Context) -> Option<TieReach> {
     Some(TieReach::Within(tolerance))
 }
 
-/// Formulation of a tie: node to surface if one of the surfaces is made of nodes or the card asks for it, else surface
-/// to surface.
+/// Formulation of a tie: node to surface if one of the surfaces is made of nodes or the card asks for this formulation,
+/// else surface to surface.
 fn formulation(card: &Card, both: [&Surface; 2], cx: &mut Context) -> ContactFormulation {
     let typed = card.choice("TYPE");
     let has_nodes = both
@@ -209,7 +209,7 @@ fn pair(row: Line, surfaces: &Surfaces, cx: &mut Context) -> Option<(usize, usiz
     None
 }
 
-/// The slave nodes of a row, sorted by whether the row ties them.
+/// The slave nodes of a row, divided into nodes that the row ties and other nodes.
 struct Faced {
     /// Slave nodes that are tied, with their nearest segments, in the order of the surface.
     near: Vec<(usize, Segment)>,
@@ -240,8 +240,8 @@ impl Faced {
     }
 }
 
-/// The sides of a slave surface that are tied as a whole: all their nodes are tied, by this tie or an earlier one, or
-/// belong to the master.
+/// The sides of a slave surface that are tied as a whole: all their nodes are tied, by this tie or by an earlier tie,
+/// or belong to the master.
 fn sides(
     row: &TieRow,
     faced: &Faced,
@@ -309,7 +309,7 @@ fn shortest_sides(segments: &[Segment], mesh: &Mesh) -> HashMap<usize, f64> {
     shortest
 }
 
-/// Segments with a tree for finding the nearest one.
+/// Segments with a tree that finds the nearest segment.
 struct Nearest<'a> {
     segments: &'a [Segment],
     x: &'a [[f64; 2]],
@@ -330,7 +330,7 @@ impl<'a> Nearest<'a> {
         }
     }
 
-    /// The segment nearest to a node; of equally near segments, the first one.
+    /// The segment nearest to a node; of equally near segments, the first segment.
     fn of(&self, node: usize) -> Option<NearestSegment> {
         let (k, off) = self.lines.of(self.x[node])?;
         let segment = self.segments[k];
@@ -382,7 +382,7 @@ fn adjust(row: &TieRow, faced: &Faced, mesh_index: &mut MeshIndex, cx: &mut Cont
     }
 }
 
-/// Reports nodes that are not tied: too far from the master, or tied already.
+/// Reports nodes that are not tied because they are too far from the master or tied already.
 fn report(
     row: &TieRow,
     own: &[(usize, Segment)],
@@ -464,7 +464,7 @@ fn covered(
 }
 
 impl Ties {
-    /// Leaves tied nodes out of the contacts with the segments that they are tied to.
+    /// Leaves tied nodes out of the contacts with the segments to which they are tied.
     pub fn leave_out(
         &self,
         contacts: &mut [Contact],

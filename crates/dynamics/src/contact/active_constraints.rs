@@ -13,7 +13,7 @@ use super::tolerances::{CLOSED_GAP, FACING_ALIKE_COSINE, INITIAL_DEPTH, PROJECTI
 /// Choice of the pairs that are constraints in a subincrement.
 #[derive(Clone, Copy)]
 pub enum ConstraintSet<'a> {
-    /// All pairs: nodes land within the subincrement.
+    /// All pairs are constraints: nodes land within the subincrement.
     All,
     /// Only the active pairs are constraints; nodes of the other pairs land at the end of the
     /// subincrement, at the next impact.
@@ -52,17 +52,17 @@ impl ConstraintSet<'_> {
     }
 }
 
-/// The pairs that are constraints in a subincrement between impacts: those that touch at its start,
-/// and those that have joined them.
+/// The pairs that are constraints in a subincrement between impacts: the pairs that touch at its start, and the pairs
+/// that have become active since.
 ///
-/// A node that touches may slide on to other segments that face nearly the same way, or that it was not in front of;
-/// that is no impact. A node that slides into a wall lands on the wall at a later impact. With surface to surface, a
-/// mean slides over a whole run of segments; there is no impact where it comes over the end of a run without a gap.
+/// There is no impact where a touching node slides on to a segment that faces nearly the same way, or that the node was
+/// not in front of. A node that slides into a wall lands on the wall at a later impact. With surface to surface there
+/// is no impact where faces come over the end of a run of segments without a gap.
 #[derive(Debug, Clone, Default)]
 pub struct ActiveConstraints {
     /// The pairs that touch at the start, with increasing keys.
     touching: Vec<Touching>,
-    /// The means of gaps at the start (surface to surface), with increasing keys.
+    /// Mean gaps at the start (surface to surface), with increasing keys.
     means: Vec<MeanAtStart>,
     /// Slave nodes that have joined the constraints, with all their segments, in increasing order.
     joined: Vec<SlaveKey>,
@@ -83,9 +83,9 @@ struct Touching {
 }
 
 impl ActiveConstraints {
-    /// Active constraints at the displacements `u0`, which the search covers: the pairs that touch there. `means` are
-    /// the constraints of contact from surface to surface at `u0`, `before` the pairs that carried forces up to the
-    /// start. Discs are always active: they land within the subincrement.
+    /// Active constraints at the displacements `u0`, which the search covers: the pairs that touch at these
+    /// displacements. `means` are the constraints of contact from surface to surface at `u0`, `before` the pairs that
+    /// carried forces up to the start. Discs are always active: they land within the subincrement.
     pub fn new(search: &Search, u0: &[f64], means: &[Constraint], before: &ClosedPairs) -> Self {
         let start = Positions::new(search.coordinates(), u0);
         let mean = |c: &Constraint| MeanAtStart {
@@ -111,7 +111,7 @@ impl ActiveConstraints {
         active
     }
 
-    /// Makes a mean active that closes soon after the start.
+    /// Makes a constraint active whose mean gap closes soon after the start (surface to surface).
     pub fn join_mean_at_start(&mut self, key: ConstraintKey) {
         let joined = MeanAtStart { key, touches: true };
         match self.means.binary_search_by_key(&key, |mean| mean.key) {
@@ -154,10 +154,10 @@ impl ActiveConstraints {
         own.peek().is_some() && (is_behind || own.any(faces_alike))
     }
 
-    /// Whether the slave node of a constraint is kept out of its segment, of a segment at its corner, or the node of
-    /// the corner out of a segment of the slave node. Two nodes that are each other's corner are one constraint. A
-    /// constraint with surface to surface is active if its mean touches, or has come over the end of the master without
-    /// a gap. A disc is always active.
+    /// Whether a constraint is active: its slave node is kept out of its segment or of a segment at its corner, or the
+    /// node of the corner is kept out of a segment of the slave node. Two nodes that are each other's corner are one
+    /// constraint. A constraint with surface to surface is active if its mean gap is closed, or if its faces have come
+    /// over the end of the master without a gap. A disc is always active.
     pub fn is_held(&self, start: Positions, constraint: &Constraint) -> bool {
         let (slave, pair) = (constraint.key.slave, &constraint.source.pair);
         let is_held = |Segment {
@@ -180,7 +180,7 @@ impl ActiveConstraints {
         }
     }
 
-    /// Whether the mean of a constraint touches, or has come over the end of the master without a gap.
+    /// Whether the mean gap of a constraint is closed, or its faces have come over the end of the master without a gap.
     fn touches_mean(&self, constraint: &Constraint) -> bool {
         let before = (self.means).binary_search_by_key(&constraint.key, |mean| mean.key);
         match before {
@@ -250,8 +250,8 @@ mod tests {
         nodes: [0, 1, 2],
     };
 
-    /// Whether a node that touches a segment is kept out of a second one in front of it; the normal of the second is
-    /// turned from the first, at the angle `direction`, by the angle `turn`.
+    /// Whether a node that touches a segment is kept out of a second segment in front of it. The normal of the first
+    /// segment has the angle `direction`; the normal of the second is turned from it by the angle `turn`.
     fn is_held(direction: f64, turn: f64) -> bool {
         let normal = |angle: f64| [angle.cos(), angle.sin()];
         let mut active = ActiveConstraints::default();

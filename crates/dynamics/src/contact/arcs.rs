@@ -21,13 +21,14 @@ impl MasterArc {
         radius: 0.0,
     };
 
-    /// Centre of the arc where its nodes p and q are at these places.
+    /// Centre of the arc where its nodes p and q are at given places.
     pub(super) fn centre(&self, [p, q]: [[f64; 2]; 2]) -> [f64; 2] {
         let ([alpha, beta], [x, y]) = (self.place, difference(p, q));
         [p[0] + alpha * x - beta * y, p[1] + alpha * y + beta * x]
     }
 
-    /// Distance of the point `s` from the body where p and q are at these places: |r| - R, or R - |r| in a hole.
+    /// Distance of the point `s` from the body where p and q are at given places: |s - x_c| - R, or R - |s - x_c| in a
+    /// hole.
     pub(super) fn gap(&self, s: [f64; 2], nodes: [[f64; 2]; 2]) -> f64 {
         let [x, y] = difference(self.centre(nodes), s);
         self.sign() * x.hypot(y) - self.radius

@@ -1,4 +1,4 @@
-//! Rows of contact with a curved face, made from those of its chord. See docs/theory/geometry.md, Curved faces.
+//! Rows of contact with a curved face, made from the rows of its chord. See docs/theory/geometry.md, Curved faces.
 
 use super::bulge::Bulge;
 use super::constraint::{RowForm, RowPair, product, sum_of};
@@ -13,18 +13,19 @@ pub(super) struct OfChord {
     pub xi: [f64; 6],
     /// Derivative of the length l of the chord.
     pub length: [f64; 6],
-    /// Derivative of Bn d, the motion along the normal.
+    /// Derivative of the normal motion Bn d.
     pub normal_motion: [f64; 6],
 }
 
-/// How the rows of a curved face differ from those of its chord: Bn and Bt of the chord, L = (l0 + l1)/2,
+/// Difference between the force rows Bn', Bt' of a curved face and the rows Bn, Bt of its chord, with L = (l0 + l1)/2:
 ///
 /// ```text
 /// beta = D/L,  s = sqrt(1 + beta²)
 /// Bn' = Bn - beta Bt,  Bt' = (Bt + beta Bn)/s    eq. (3.30)
 /// ```
 ///
-/// With the rows of the face Bn' d = G1 - G0. End rows (`RowForm::End`) have beta = b'(xi)/l.
+/// The normal row of the face gives the change of the gap: Bn' d = G1 - G0. For end rows (`RowForm::End`) the slope of
+/// the face is beta = b'(xi)/l.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bend {
     /// beta
@@ -35,7 +36,7 @@ pub(super) struct Bend {
     pub chord: [RowPair<6>; 2],
     /// Derivative of the slope beta (1/length).
     of_slope: [f64; 6],
-    /// Derivative of Bn d of the chord.
+    /// Derivative of the normal motion Bn d of the chord.
     of_normal_motion: [f64; 6],
     /// Derivative of the height b(xi) (dimensionless).
     pub of_height: [f64; 6],
@@ -101,8 +102,8 @@ impl Bend {
         [bent, of_bent]
     }
 
-    /// Pn and Pt at the chord that together are the same force as Pn and Pt at the face: Pn + beta Pt/s and Pt/s - beta
-    /// Pn.
+    /// The forces at the chord that together equal Pn and Pt at the face: Pn + beta Pt/s along the normal, Pt/s - beta
+    /// Pn along the tangent.
     pub fn at_chord(&self, [pn, pt]: [f64; 2]) -> [f64; 2] {
         let (beta, s) = (self.slope, self.stretch);
         [pn + beta * pt / s, pt / s - beta * pn]

@@ -1,4 +1,4 @@
-//! Bulges of curved faces: how far the face is outside of the chord of a segment, and gaps to it. See
+//! Bulges of curved faces: distance of a face outwards from the chord of a segment, and gaps to the face. See
 //! docs/theory/geometry.md, Curved faces.
 
 use super::projection::Projection;
@@ -15,9 +15,10 @@ use crate::vectors::length;
 pub struct Bulge {
     /// The coefficients c0 to c3 of b(xi).
     coefficients: [f64; 4],
-    /// Whether the face goes on as a straight line beyond the ends of the segment. For nodes the face goes straight on:
-    /// a node comes over an end before it changes its segment. For points of faces the cubic goes on: a point changes
-    /// its segment at the bisector, and a quantity that is integrated over points must be one cubic.
+    /// Whether the face goes on as a straight line beyond the ends of the segment. For nodes the face goes straight on
+    /// beyond the ends of the segment: a node comes over an end before it changes its segment. For points of faces the
+    /// cubic goes on beyond the ends of the segment: a point changes its segment at the bisector, and integration over
+    /// points needs one cubic.
     goes_straight_on: bool,
 }
 
@@ -35,8 +36,8 @@ impl Bulge {
     /// b = l (tau_a xi (1 - xi)² + tau_b xi² (1 - xi)),  tau = t - t³/5 + 3 t⁵/35
     /// ```
     ///
-    /// With tau = t the cubic would have the slopes of the face; its mean distance from an arc would be 8/15 of the
-    /// greatest distance. With the given tau the area between chord and arc is right to the seventh order, tau = 3
+    /// With tau = t the cubic would have the slopes t of the face, and its mean distance from an arc would be 8/15 of
+    /// its greatest distance. With the given tau the area between chord and arc is right to the seventh order, tau = 3
     /// ((1 + t²) atan t - t)/(2 t²). The greatest distance from the arc is a fifth of that with tau = t, and the slopes
     /// are right to the third order.
     pub(super) fn of_slopes(length: f64, slopes: [f64; 2]) -> Self {
@@ -82,8 +83,8 @@ impl Bulge {
         }
     }
 
-    /// The same bulge for points of faces: one cubic beyond the ends of the segment too. An end that is a mid-side node
-    /// (`is_between`) is replaced by the vertex x_v of eq. (3.21).
+    /// The same bulge for points of faces: its cubic goes on beyond the ends of the segment. An end that is a mid-side
+    /// node (`is_between`) is replaced by the vertex x_v of eq. (3.21).
     pub(super) fn of_points(self, is_between: [bool; 2]) -> Self {
         let [_, rise, ..] = self.coefficients;
         let coefficients = match is_between {
@@ -113,8 +114,8 @@ impl Bulge {
         self.coefficients[3] != 0.0
     }
 
-    /// The xi from which the face goes straight on: the end of the segment that xi is beyond, else
-    /// xi itself.
+    /// The end (0 or 1) of the segment beyond which xi lies, from where the face goes straight on; between the ends xi
+    /// itself.
     #[inline]
     fn end_before(&self, xi: f64) -> f64 {
         match self.goes_straight_on {

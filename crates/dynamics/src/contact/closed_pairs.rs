@@ -1,6 +1,7 @@
-//! Closed contact pairs with their forces and states, which a pass or an increment hands on to the next one. The closed
-//! pairs start the next complementarity problem, choose the pairs of impulses, and tell the tunnelling check and the
-//! landings which nodes are in contact. See docs/theory/complementarity.md and docs/theory/impacts.md.
+//! Closed contact pairs with their forces and states, which a pass or an increment hands on to the next pass or
+//! increment. The closed pairs start the next complementarity problem, choose the pairs of impulses, and tell the
+//! tunnelling check and the landings which nodes are in contact. See docs/theory/complementarity.md and
+//! docs/theory/impacts.md.
 
 use super::constraint::{Configurations, Constraint};
 use super::keys::{ConstraintKey, NodeAtSegment, SlaveKey};
@@ -18,8 +19,8 @@ pub struct ClosedPair {
     pub force: [f64; 2],
     /// Coefficient of friction mu of the pair.
     pub mu: f64,
-    /// Whether the pair sticks or slides in the solution of the complementarity problem. The force of a sliding pair is
-    /// at its limit, though the pair need not have moved.
+    /// Whether the pair sticks or slides in the solution of the complementarity problem. The tangential force of a
+    /// sliding pair is at the friction limit, though the pair need not have moved.
     pub state: ContactState,
     /// Whether the pair has slipped.
     pub slips: bool,
@@ -38,8 +39,8 @@ impl ClosedPair {
         }
     }
 
-    /// Tangential force beyond the friction limit of a coefficient mu, or, where the pair slips, its difference from
-    /// the limit (force), eq. (3.6).
+    /// Tangential force beyond the friction limit of a coefficient mu (force), eq. (3.6). Where the pair slips, the
+    /// result is the distance of the tangential force from the limit, whichever of the two is larger.
     ///
     /// ```text
     /// |Pt| - mu Pn,   of a pair that slips ||Pt| - mu Pn|
@@ -50,8 +51,7 @@ impl ClosedPair {
         if self.slips { excess.abs() } else { excess }
     }
 
-    /// The constraint of the pair between other configurations; the same target holds it at their
-    /// start.
+    /// The constraint of the pair between other configurations, with the same target at their start.
     pub fn constraint(&self, at: &Configurations) -> Constraint {
         Constraint {
             mu: self.mu,
@@ -65,8 +65,7 @@ impl ClosedPair {
     }
 }
 
-/// The pairs in contact, with increasing keys: those that carry a force, or, at an impact, those
-/// that touch.
+/// The pairs in contact, with increasing keys: the pairs that carry a force or, at an impact, the pairs that touch.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ClosedPairs(Vec<ClosedPair>);
 
@@ -80,7 +79,7 @@ impl FromIterator<ClosedPair> for ClosedPairs {
 }
 
 impl ClosedPairs {
-    /// Replaces the pairs by others, which come with increasing keys.
+    /// Replaces the pairs by other pairs, which come with increasing keys.
     pub fn set(&mut self, pairs: impl Iterator<Item = ClosedPair>) {
         self.0.clear();
         self.0.extend(pairs);
@@ -111,7 +110,7 @@ impl ClosedPairs {
         self.0.iter()
     }
 
-    /// Whether a node belongs to one of the closed means (surface to surface).
+    /// Whether a node belongs to a constraint whose mean gap is closed (surface to surface).
     pub(super) fn means_have(&self, node: usize) -> bool {
         let mut means = self.0.iter().filter_map(|pair| pair.source.target.mean());
         means.any(|mean| mean.has(node))
@@ -165,7 +164,7 @@ impl ClosedPairs {
     }
 
     /// States from which the complementarity problem of constraints with the given, increasing keys starts. A
-    /// constraint starts as open if it was open and its slave node still has a closed pair among `keys`; only a node
+    /// constraint starts as open if it was open and its slave node still has a closed pair among `keys`. Only a node
     /// that has come to another segment hands its state on.
     pub fn states_among(&self, keys: &[ConstraintKey]) -> impl Iterator<Item = ContactState> {
         let is_left = |pair: &ClosedPair| keys.binary_search(&pair.key).is_err();

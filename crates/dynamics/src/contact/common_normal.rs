@@ -4,13 +4,13 @@
 use super::tolerances::CONE_MISS;
 use crate::vectors::angle;
 
-/// Weight of the second normal in the normal of node against node.
+/// Weight of the second of the `normals` in the common normal of a slave node and a convex corner.
 ///
-/// `normals` are the normals of the segments before and after a convex corner; `own` are those before and after the
-/// slave node on its own surface. A normal that separates the two corners lies in the normal cone between `normals` and
-/// in the cone between the opposites of `own`; the common normal is the middle of their intersection. Flush blocks meet
-/// with the normal of their faces, two corners with the normal between their bisectors. A node in a concave corner has
-/// no common normal.
+/// `normals` are the normals of the segments before and after a convex corner; `own` are the normals before and after
+/// the slave node on its own surface. A normal that separates slave node and corner lies in the normal cone between
+/// `normals` and in the cone between the opposites of `own`. The common normal is the middle of the intersection of
+/// both cones. Flush blocks meet with the normal of their faces, two corners with the normal between their bisectors. A
+/// node in a concave corner has no common normal.
 pub fn common_normal(normals: [[f64; 2]; 2], own: [[f64; 2]; 2]) -> Option<f64> {
     let [n, m] = normals;
     let opposite = own.map(|n| [-n[0], -n[1]]);

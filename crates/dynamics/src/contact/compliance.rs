@@ -3,8 +3,8 @@
 //! docs/theory/impacts.md and docs/numerics.md, Compliance of
 //! the pairs.
 //!
-//! The two products of the Delassus operator, eq. (5.1): the gaps and slips of constraints under forces at the unknowns
-//! of one compliance block, and under contact forces. See docs/theory/complementarity.md, Problem of a pass.
+//! The two products of the Delassus operator, eq. (5.1): gaps and slips of constraints under forces at the unknowns of
+//! a compliance block, and gaps and slips under contact forces. See docs/theory/complementarity.md, Problem of a pass.
 
 use std::array::from_fn;
 use std::collections::BTreeMap;
@@ -23,15 +23,15 @@ use crate::linear::{CheckedSolver, LinearError, Rotation, Transformation};
 /// other normals needs no further solves.
 #[derive(Debug)]
 pub struct Compliance {
-    /// T: dependence of the dofs on the unknowns.
+    /// The map T: dependence of the dofs on the unknowns.
     map: Transformation,
     /// Rotation R of the bodies since the matrix was factorised.
     rotation: Rotation,
     /// Connected group of every unknown in the matrix.
     groups: Vec<usize>,
-    /// Group of every unknown in the matrix of the elements alone: its body.
+    /// Body of every unknown: its connected group in the matrix of the elements alone.
     bodies: Vec<usize>,
-    /// The inverses computed so far, for all constraints or for those of some bodies.
+    /// The inverses computed so far, for all constraints or for the constraints of some bodies.
     inverses: BTreeMap<ConstraintGroup, Vec<InverseBlock>>,
 }
 
@@ -42,8 +42,8 @@ pub enum ConstraintGroup {
     All,
     /// The constraints between the same bodies, which are given by increasing numbers.
     Bodies(Vec<usize>),
-    /// A part, along the surfaces, of the constraints between the same bodies; contact and part
-    /// number identify it.
+    /// A part, along the surfaces, of the constraints between the same bodies; the contact and the number of the part
+    /// identify the part.
     Part(Vec<usize>, [usize; 2]),
 }
 
@@ -58,13 +58,13 @@ struct InverseBlock {
 }
 
 impl InverseBlock {
-    /// The block of a group and its place, among blocks with increasing groups.
+    /// The block of a group and the place of this block among `blocks`, whose groups increase.
     fn of(blocks: &[InverseBlock], group: usize) -> Option<(usize, &InverseBlock)> {
         let at = blocks.binary_search_by_key(&group, |block| block.group);
         at.ok().map(|at| (at, &blocks[at]))
     }
 
-    /// Row of an unknown; `next` is the row that is looked at first.
+    /// Row of an unknown; the search begins with the row `next`.
     fn place(&self, unknown: usize, next: usize) -> Option<usize> {
         match self.unknowns.get(next) {
             Some(&of_next) if of_next == unknown => Some(next),
@@ -98,7 +98,7 @@ impl Compliance {
     /// computes the inverse anew, with the same bits.
     ///
     /// # Errors
-    /// Returns an error if the archive is of another model.
+    /// The archive belongs to another model.
     pub fn transfer(
         &mut self,
         archive: &mut Archive,
@@ -230,12 +230,12 @@ impl Compliance {
         Ok(())
     }
 
-    /// T: dependence of the dofs on the unknowns.
+    /// The map T: dependence of the dofs on the unknowns.
     pub fn map(&self) -> &Transformation {
         &self.map
     }
 
-    /// Mutable T: its rows of bodies that turn depend on the iterate.
+    /// The mutable matrix T, whose rows for bodies that turn depend on the iterate.
     pub fn map_mut(&mut self) -> &mut Transformation {
         &mut self.map
     }
@@ -282,7 +282,8 @@ impl Compliance {
         }
     }
 
-    /// Entries of the normal and tangential row at the dofs of a node, times R (docs/numerics.md, Turned factors).
+    /// Entries of the normal and of the tangential row at the dofs of a node, times the rotation R (docs/numerics.md,
+    /// Turned factors).
     fn turned_back(&self, dofs: &[usize], rows: &Rows, node: usize) -> [[f64; 2]; 2] {
         let Rows { normal, tangential } = rows;
         let mut normal = [normal[2 * node], normal[2 * node + 1]];
@@ -395,7 +396,7 @@ pub(super) struct Responses {
     rows: Vec<f64>,
     /// Number of entries of a row.
     width: usize,
-    /// Columns of gap and slip of some constraints, over the unknowns.
+    /// Columns (over the unknowns) of the gaps and slips of some constraints.
     columns: [[Vec<f64>; 2]; TOGETHER],
 }
 
@@ -429,8 +430,7 @@ impl Responses {
         }
     }
 
-    /// Writes the columns of `together` constraints, the `first` one and those after it, to the
-    /// rows of `count` constraints.
+    /// Writes the columns of `together` constraints, which begin with the `first`, to the rows of `count` constraints.
     #[inline(always)]
     fn write_rows(&mut self, first: usize, [together, count]: [usize; 2]) {
         let size = self.rows.len() / self.width;
@@ -462,8 +462,9 @@ impl Responses {
         }
     }
 
-    /// (B_l T) Y of eq. (5.1), Y being the rows: gaps and slips of the constraints under a unit normal and a unit
-    /// tangential force of l. With `adds` the result is added to the sums, otherwise it replaces them.
+    /// Products (B_l T) Y of eq. (5.1) with the rows Y: gaps and slips of the constraints under a unit normal and a
+    /// unit tangential force of the constraint l. With `adds` the result is added to the sums, otherwise the result
+    /// replaces the sums.
     #[inline(always)]
     pub fn product<S: Simd>(&self, simd: S, l: &[UnknownEntry], sums: [&mut [f64]; 2], adds: bool) {
         let terms = Terms {
@@ -492,8 +493,8 @@ struct Terms<'a, F: Fn(&UnknownEntry) -> [f64; 2]> {
 }
 
 impl<F: Fn(&UnknownEntry) -> [f64; 2]> Terms<'_, F> {
-    /// The two sums of the vectors of some entries times their factors; they are added to the values there, or replace
-    /// them.
+    /// The two sums of the vectors of some entries times their factors; the sums are added to the values there, or
+    /// replace these values.
     #[inline(always)]
     fn combine<S: Simd>(
         &self,

@@ -1,6 +1,6 @@
 //! A contact constraint, linearised at the current iterate: gap and slip, the rows of its force,
 //! and the derivatives of gap and slip. The complementarity problem, contact forces, impulses,
-//! convergence and ledger know only this constraint of contact. See docs/theory/contact.md and
+//! convergence and ledger know of contact only its constraints. See docs/theory/contact.md and
 //! docs/theory/complementarity.md.
 //!
 //! The configurations between which contact constraints are linearised, and the form of their
@@ -90,7 +90,8 @@ pub struct Constraint {
     pub other_derivative_rows: Option<Rows>,
     /// Gap g of the iterate (length), positive when open; in a fit the allowed overlap is added, eq. (3.15).
     pub gap: f64,
-    /// Gap at the start in the sense of the force rows, g - Bn d (length); in a fit the overlap allowed there is added.
+    /// Gap at the start that follows from the force rows, g - Bn d (length); in a fit the overlap allowed at the start
+    /// is added.
     pub start_gap: f64,
     /// Slip Dt since the start of the increment (length).
     pub slip: f64,
@@ -98,7 +99,7 @@ pub struct Constraint {
     pub mu: f64,
     /// Whether the coefficient depends on slip rate or pressure.
     pub mu_varies: bool,
-    /// Length s of the normal row, relative to that of a straight face: the normal force is s Pn, eq. (3.31).
+    /// Length s of the normal row, relative to the length for a straight face: the normal force is s Pn, eq. (3.31).
     pub stretch: f64,
     /// Decrease of the overlap that a fit allows within the increment (length), eq. (3.15).
     pub shrinkage: f64,
@@ -159,8 +160,7 @@ impl Constraint {
         }
     }
 
-    /// The same constraint with another gap and slip, and with the length `scale` to which they are
-    /// relative.
+    /// The same constraint with another gap and slip, and with the length `scale` to which gap and slip are relative.
     pub fn with_gap_and_slip(&self, [gap, slip]: [f64; 2], scale: f64) -> Self {
         Constraint {
             gap,
@@ -186,8 +186,9 @@ impl Constraint {
         self.product(&self.derivative_rows().tangential, |dof| v[dof])
     }
 
-    /// A gap or slip of the pair (length), or 0 if it is negligible against the segment, eq. (4.21). The remains of a
-    /// motion that has died away must not become the scale of a complementarity problem, whose forces would underflow.
+    /// A gap or slip of the pair (length), or 0 if the value is negligible against the length of the segment, eq.
+    /// (4.21). The remains of a motion that has died away must not become the scale of a complementarity problem, whose
+    /// forces would underflow.
     pub fn resolved(&self, length: f64) -> f64 {
         match length.abs() < NOTHING * self.scale {
             true => 0.0,
@@ -218,7 +219,7 @@ impl Constraint {
     /// g0 + t Bn V + t²/2 Bn A = 0
     /// ```
     ///
-    /// Returns `None` if the gap does not close.
+    /// `None` if the gap does not close.
     pub fn closing_time(&self, [v, a]: [&[f64]; 2], end: f64) -> Option<f64> {
         let (gap, rate) = (self.start_gap.max(0.0), self.normal_motion(v));
         let discriminant = rate * rate - 2.0 * gap * self.normal_motion(a);
@@ -229,7 +230,7 @@ impl Constraint {
         (0.0..=end).contains(&time).then_some(time)
     }
 
-    /// Adds Bn^T Pn + Bt^T Pt to a vector over all dofs.
+    /// Adds the contact force Bn^T Pn + Bt^T Pt to a vector over all dofs.
     pub fn add_force(&self, [pn, pt]: [f64; 2], force: &mut [f64]) {
         let Rows { normal, tangential } = &self.force_rows;
         for (&dof, (n, t)) in self.dofs.iter().zip(normal.iter().zip(tangential)) {
@@ -242,7 +243,7 @@ impl Constraint {
         self.dofs.chunks_exact(2).map(|dofs| dofs[0] / 2)
     }
 
-    /// Bn^T Pn + Bt^T Pt at every node.
+    /// Contact force Bn^T Pn + Bt^T Pt at every node of the constraint.
     pub fn nodal_forces(&self, [pn, pt]: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
         let Rows { normal, tangential } = &self.force_rows;
         let force = move |k: usize| normal[k] * pn + tangential[k] * pt;
@@ -255,7 +256,7 @@ impl Constraint {
         self.source.pair.is_of_master
     }
 
-    /// Bn^T Pn + Bt^T Pt at every node of the contact's slave surface.
+    /// Contact force Bn^T Pn + Bt^T Pt at every node of the contact's slave surface.
     pub fn forces_on_slave_surface(
         &self,
         force: [f64; 2],
@@ -267,7 +268,7 @@ impl Constraint {
         own.map(|(_, force)| force)
     }
 
-    /// The parts of the constraint's normal force on the nodes of the contact's slave surface, and on those of its
+    /// The parts of the constraint's normal force on the nodes of the contact's slave surface, and on the nodes of its
     /// master.
     pub fn surface_parts(&self) -> [SurfaceParts; 2] {
         let all: SmallVec<[(usize, [f64; 2]); 8]> = self.nodal_forces([1.0, 0.0]).collect();
@@ -278,7 +279,7 @@ impl Constraint {
         }
     }
 
-    /// Bn^T Pn + Bt^T Pt at every slave node.
+    /// Contact force Bn^T Pn + Bt^T Pt at every slave node of the constraint.
     pub fn slave_forces(&self, force: [f64; 2]) -> impl Iterator<Item = (usize, [f64; 2])> {
         self.nodal_forces(force).take(self.slave_dofs / 2)
     }
@@ -294,13 +295,13 @@ impl Constraint {
 /// f_k = Bn_k.N/(N.N),  N = sum_k Bn_k,  sum_k f_k = 1    eq. (9.15)
 /// ```
 ///
-/// With surface to surface the parts are the weights of the mean; a node without normal force, such as a node that only
-/// turns a disc, has no part.
+/// With surface to surface the parts are the weights of the mean gap; a node without normal force, such as a node that
+/// only turns a disc, has no part.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct SurfaceParts {
-    /// N, the force on the surface under a normal force of 1.
+    /// The force N on the surface under a contact normal force Pn of 1.
     pub normal: [f64; 2],
-    /// Nodes with their parts f.
+    /// Nodes of the surface with their parts f of the normal force.
     pub parts: SmallVec<[(usize, f64); 4]>,
 }
 

@@ -70,7 +70,7 @@ pub struct Crossing {
 /// ```
 ///
 /// For motion of second order r x e is a quartic in time with the sign of the gap. A node that
-/// moves along the line of the segment meets it once, when it reaches one of its ends.
+/// moves along the line of the segment meets the segment once, when the node reaches one of the ends.
 pub fn crossings(nodes: &[QuadraticMotion; 3], dt: f64) -> Vec<Crossing> {
     if is_clear(nodes, dt) {
         return Vec::new();
@@ -87,8 +87,8 @@ pub fn crossings(nodes: &[QuadraticMotion; 3], dt: f64) -> Vec<Crossing> {
 /// Whether a node on a straight path stays clearly on one side of the line of the segment, before its end a, or beyond
 /// b, at all times.
 ///
-/// On a straight path r x e, -r.e and (r - e).e are quadratic in time. Each of the three is positive if its Bernstein
-/// coefficients are; for r x e the coefficients are r0 x e0, (r0 x e1 + r1 x e0)/2 and r1 x e1.
+/// On a straight path r x e, -r.e and (r - e).e are quadratic in time. A quadratic function is positive if its
+/// Bernstein coefficients are positive; for r x e the coefficients are r0 x e0, (r0 x e1 + r1 x e0)/2 and r1 x e1.
 fn is_clear(nodes: &[QuadraticMotion; 3], dt: f64) -> bool {
     if nodes.iter().any(|node| node.acceleration != [0.0; 2]) {
         return false;
@@ -141,11 +141,11 @@ fn direction(zero: Zero) -> CrossingSense {
     }
 }
 
-/// Motion of the node and of the end b relative to the end a; coefficients of t/dt.
+/// Motion of the node and of the end b relative to the end a, as coefficients of the powers of t/dt.
 struct Relative {
-    /// r = x_s - x_a
+    /// Vector r = x_s - x_a from the end a to the node
     r: [[f64; 2]; 3],
-    /// e = x_b - x_a
+    /// Vector e = x_b - x_a of the segment
     e: [[f64; 2]; 3],
 }
 
@@ -168,7 +168,7 @@ impl Relative {
         }
     }
 
-    /// r x e, eq. (10.5)
+    /// Cross product r x e, eq. (10.5)
     fn cross(&self) -> Quartic {
         self.product(cross)
     }
@@ -187,7 +187,8 @@ impl Relative {
         }
     }
 
-    /// xi = r.e/e.e; for a segment of zero length 0 if the node coincides with it, else `None`.
+    /// The place xi = r.e/e.e. For a segment of zero length xi is 0 if the node coincides with the segment, else
+    /// `None`.
     fn xi(&self, t: f64) -> Option<f64> {
         let [r, e] =
             [&self.r, &self.e].map(|c| [0, 1].map(|i| c[0][i] + (c[1][i] + c[2][i] * t) * t));
@@ -250,8 +251,7 @@ pub(crate) struct Quartic {
     pub tolerance: f64,
 }
 
-/// A zero with the signs of the polynomial before and after it; the sign is 0 beyond the ends of
-/// [0, 1].
+/// A zero of the polynomial with the signs before and after the zero; beyond the ends of [0, 1] the sign is 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Zero {
     /// Position t.
@@ -265,7 +265,7 @@ pub(crate) struct Zero {
 /// The zeros of a polynomial on [0, 1].
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Zeros {
-    /// The zeros in increasing order, with double zeros (equal signs on both sides).
+    /// The zeros in increasing order; a double zero has equal signs on both sides.
     At(Vec<Zero>),
     /// The polynomial is zero on all of [0, 1].
     Everywhere,
@@ -280,7 +280,7 @@ impl Quartic {
     /// All zeros.
     ///
     /// Between its extrema the polynomial is monotone: a zero lies between two extrema of different
-    /// signs, a double one at an extremum that is zero.
+    /// signs, a double zero at an extremum that is zero.
     pub fn zeros(&self) -> Zeros {
         if self.keeps_its_sign() {
             return Zeros::At(Vec::new());
@@ -341,7 +341,7 @@ impl Quartic {
     }
 
     /// Increasing list of points that contains 0, 1 and the extrema of the polynomial between them.
-    /// The zeros of the third derivative separate those of the second, which separate those of the
+    /// The zeros of the third derivative separate the zeros of the second derivative, which separate the zeros of the
     /// first.
     fn extrema(&self) -> Vec<f64> {
         let first = derivative(&self.c);

@@ -7,7 +7,7 @@ use super::bulge::Bulge;
 use super::tolerances::{CORNER_COSINE, LEAST_TURN, LONGEST_BENT, UNLIKE_TURNS};
 use crate::vectors::{cross, difference, dot, length};
 
-/// Shapes of faces that are known beyond the places of their nodes.
+/// Data on the shapes of faces in addition to the places of their nodes.
 #[derive(Debug, Clone, Default)]
 pub struct FaceShapes {
     /// For every mid-side node, the ends of its side.
@@ -100,10 +100,10 @@ struct Turns<'a> {
     is_half: Vec<bool>,
 }
 
-/// How a chain turns from one segment to the next.
+/// Turn of a chain from one segment to the next.
 #[derive(Clone, Copy, PartialEq)]
 enum Turn {
-    /// The chain ends, has a corner, or goes on with a side that has its own shape.
+    /// The chain ends, has a corner, or goes on with a side whose shape is given.
     End,
     /// The next segment has the same direction.
     Straight,
@@ -142,10 +142,11 @@ impl Turns<'_> {
 
     /// Slopes at the ends of every segment that bends, against its chord.
     ///
-    /// A segment bends between two smooth turns to the same side. A segment between the end of the chain, or a corner,
-    /// and a smooth turn to a segment that bends to this side bends too. A segment that is much longer than a neighbour
-    /// stays straight: it is a straight side that ends in a fillet. If a segment turns far more at one end than at the
-    /// other, like the last chord of a flank at a coarse fillet, its neighbour at that end bends for the whole turn.
+    /// A segment bends between two smooth turns to the same side. A segment also bends if it lies between the end of
+    /// the chain, or a corner, and a smooth turn to a segment that bends to the same side. A segment that is much
+    /// longer than a neighbour stays straight: it is a straight side that ends in a fillet. If a segment turns far more
+    /// at one end than at the other, like the last chord of a flank at a coarse fillet, its neighbour at that end bends
+    /// for the whole turn.
     fn slopes(&self) -> Vec<Option<[f64; 2]>> {
         let count = self.chain.segments.len();
         let ends = |i: usize| {

@@ -1,5 +1,5 @@
-//! Delassus operator Q = G W B^T of a set of constraints, and the frictional complementarity
-//! problem it forms. See docs/theory/complementarity.md, Problem of a pass (paper eqs 36 to 47).
+//! Delassus operator Q = G W B^T of a set of constraints, and the frictional complementarity problem with this
+//! operator. See docs/theory/complementarity.md, Problem of a pass (paper eqs 36 to 47).
 
 use nalgebra::{DMatrix, DVector};
 use pulp::{Arch, Simd, WithSimd};
@@ -10,7 +10,7 @@ use super::compliance::{Compliance, ConstraintGroup, GroupRows, Responses, Unkno
 use super::constraint::Constraint;
 use crate::lcp::{FreeUnknowns, FrictionalLcp};
 
-/// Memory of the Delassus operators of a matrix; the next matrix uses it again.
+/// Memory of the Delassus operators of a matrix; the next matrix uses this memory again.
 #[derive(Debug, Default)]
 pub struct DelassusSpace {
     /// Entries of Q.
@@ -33,8 +33,8 @@ impl DelassusSpace {
 /// The complementarity problem of some constraints with the given constant terms of gap and slip:
 /// Q = G W B^T, eq. (5.1), with the compliance W, derivative rows G and force rows B.
 ///
-/// Every constraint must have been prepared in the scope of the compliance. Q is symmetric where G = B, unless bodies
-/// turn: then their rows of T differ between gaps and forces, eq. (11.3).
+/// Every constraint must have been prepared in the scope of the compliance. The operator Q is symmetric where G = B,
+/// unless bodies turn: the rows of T for a turning body differ between gaps and forces, eq. (11.3).
 pub fn frictional_lcp(
     constraints: &[&Constraint],
     (compliance, scope): (&Compliance, &ConstraintGroup),
@@ -66,8 +66,8 @@ const PANEL: usize = 128;
 const PIECE: usize = 16;
 const THREADS: usize = 64;
 
-/// Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential ones. Q is the sum over the groups of
-/// unknowns, each of which couples the constraints that act on it.
+/// The operator Q = G W B^T, eq. (5.1), with all normal rows and columns before all tangential rows and columns. The
+/// operator Q is a sum over the groups of unknowns; a group couples the constraints that act on it.
 fn delassus(
     constraints: &[&Constraint],
     compliance: &Compliance,
@@ -121,7 +121,7 @@ fn is_worth_threads(constraints: usize) -> bool {
     constraints >= THREADS && rayon::current_num_threads() > 1
 }
 
-/// Y = W (G T)^T of the members of a group, panel by panel.
+/// Responses Y = W (G T)^T of the constraints that act on a group, panel by panel.
 fn set_responses(members: &[Member], inverse: (&[f64], usize), responses: &mut Vec<Responses>) {
     let panels = members.chunks(PANEL).len();
     responses.resize_with(panels.max(responses.len()), Responses::default);
@@ -163,12 +163,12 @@ struct GroupSum<'a> {
     responses: &'a [Responses],
     /// Number of all constraints.
     n: usize,
-    /// Whether the part is added to the entries of Q, or replaces them.
+    /// Whether the part is added to the entries of Q, or replaces these entries.
     adds: bool,
 }
 
 impl GroupSum<'_> {
-    /// Adds or writes the part to Q, column by column.
+    /// Adds the part to Q, or writes it to Q, column by column.
     fn write_to(self, q: &mut [f64]) {
         let on_threads = is_worth_threads(self.members.len());
         let piece = if on_threads { PIECE } else { self.n.max(1) };

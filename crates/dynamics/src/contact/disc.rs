@@ -73,14 +73,14 @@ struct Finder<'a> {
     positions: [Positions<'a>; 2],
 }
 
-/// Features in the order of their constraints' numbers, each with this number and a segment of the
+/// Features of the master in the order of their constraints' numbers, each with the number and a segment of the
 /// feature.
 type Over = SmallVec<[(usize, usize, MasterFeature); 4]>;
 
 impl Finder<'_> {
     /// Features over which the centre lies, among those near it, at the start (`k` = 0) or in the iterate (`k` = 1). A
-    /// centre lies over segments and arcs between their ends, and over vertices between the ends of two of them or at
-    /// the ends of the surface.
+    /// centre lies over a segment or an arc between its ends; it lies over a vertex between two of these, or at an end
+    /// of the surface.
     fn over(
         &self,
         candidates: impl Iterator<Item = Candidate>,
@@ -136,7 +136,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Coordinate of the centre along a segment, or along the arc of which it is a chord: 0 at its start, 1 at its end.
+    /// Coordinate of the centre along a segment, or along the arc of which the segment is a chord: 0 at its start, 1 at
+    /// its end.
     fn xi(&self, segment: usize, k: usize) -> f64 {
         let at = |node: usize| self.positions[k].of(node);
         let Some(SurfaceArc { nodes, arc, .. }) = self.surfaces.arc_of(segment) else {
@@ -153,11 +154,11 @@ impl Finder<'_> {
 type Map = SMatrix<f64, 2, 8>;
 type DiscRow = SVector<f64, 8>;
 
-/// J, the rotation by a right angle to the left.
+/// The rotation J by a right angle to the left.
 const J: Matrix2<f64> = Matrix2::new(0.0, -1.0, 1.0, 0.0);
 
-/// Positions of the nodes of a disc constraint at the start and at the end: its centre s, the node that turns with it,
-/// and a and b. The entries of a row follow the order s, turning node, a, b.
+/// Positions of the nodes of a disc constraint at the start and at the end: the centre s, the node that turns with the
+/// disc, and the master nodes a and b. The entries of a row follow the order s, turning node, a, b.
 struct NodePositions {
     form: RowForm,
     nodes: [[[f64; 2]; 4]; 2],
@@ -177,12 +178,13 @@ impl NodePositions {
             .map(|x| map * DiscRow::from_iterator(x.into_iter().flatten()))
     }
 
-    /// The nodes s, a and b at start and end.
+    /// Positions of the nodes s, a and b at start and end.
     fn of_segment(&self) -> [[[f64; 2]; 3]; 2] {
         self.nodes.map(|[s, _, a, b]| [s, a, b])
     }
 
-    /// Part w of the increment at which directions are evaluated, z_m = z_0 + w (z_1 - z_0): the middle, or the end.
+    /// Part w of the increment at which directions are evaluated, with z_m = z_0 + w (z_1 - z_0): 1/2 for the middle, 1
+    /// for the end.
     fn part(&self) -> f64 {
         match self.form {
             RowForm::End => 1.0,
@@ -191,8 +193,7 @@ impl NodePositions {
     }
 }
 
-/// The maps for x_b - x_a, and for the vector from the centre of the disc to the node that turns
-/// with it.
+/// The maps for x_b - x_a, and for the vector from the centre of the disc to the node that turns with the disc.
 fn arms() -> [Map; 2] {
     let (mut e, mut arm) = (Map::zeros(), Map::zeros());
     for i in 0..2 {
@@ -215,7 +216,7 @@ fn from_centre(arc: &MasterArc) -> Map {
     r
 }
 
-/// Rotation of a vector within the increment, its rows, and the derivative of its force row with
+/// Rotation of a vector within the increment, the rows of this rotation, and the derivative of its force row with
 /// respect to the end.
 ///
 /// ```text
@@ -243,8 +244,8 @@ impl Turn {
     }
 }
 
-/// Rows of a disc, with its gap without radius and allowed overlap, the length to which the gap is relative, and the
-/// tilt of the force.
+/// Rows of a disc, the gap of its centre without allowed overlap, the length to which the gap is relative, and the tilt
+/// of the force.
 struct DiscRows {
     force: RowPair<8>,
     derivative: RowPair<8>,
@@ -381,7 +382,7 @@ fn row(row: &[f64; 8]) -> DiscRow {
     DiscRow::from_column_slice(row)
 }
 
-/// Rows at a segment: those of the centre, and the slip with the rotations of disc and segment.
+/// Rows of a disc at a segment: the rows of its centre, with the rotations of disc and segment added to the slip.
 ///
 /// ```text
 /// g = g(x_s) - rho,   Dt = L (xi1 - xi0) - rho (T_s - T_e)    eq. (3.23)
@@ -418,8 +419,8 @@ fn at_segment(places: &NodePositions, radius: f64, height: f64) -> DiscRows {
     }
 }
 
-/// Ingredients of the rows at an arc: r at start, middle and end, m = |r_m|, and the weights of the rotations of disc
-/// and arc.
+/// Values from which the rows of a disc at an arc are made: the vector r at start, middle and end, m = |r_m|, and the
+/// weights of the rotations of disc and arc.
 struct AtArc {
     r: [Vector2<f64>; 2],
     middle: Vector2<f64>,
@@ -459,7 +460,7 @@ impl AtArc {
     }
 }
 
-/// Rows at an arc of radius R about x_c, with r = x_s - x_c and m = |r_m|; in a hole the signs differ.
+/// Rows at an arc of radius R about x_c, with r = x_s - x_c and m = |r_m|; in a hole other signs apply.
 ///
 /// ```text
 /// g  = |r| - R - rho,   Bn = 2 r_m/(l0 + l1), or r_1/l1 of end rows
@@ -515,8 +516,8 @@ mod tests {
     const U0: [f64; 8] = [0.1, -0.05, 0.02, 0.07, -0.03, 0.01, 0.04, -0.02];
     const U1: [f64; 8] = [-0.2, -0.15, 0.3, 0.2, 0.25, -0.3, -0.1, 0.3];
 
-    /// The disc at the segment, at a vertex, at an arc whose body is inside, and in a hole; then the same four behind a
-    /// rise.
+    /// The disc at the segment, at a vertex, at an arc whose body is inside, and in a hole; then these four constraints
+    /// behind a rise.
     fn sources() -> [PairTarget; 8] {
         let arc = |beta: f64, radius: f64| MasterArc {
             place: [0.5, beta],
@@ -549,7 +550,7 @@ mod tests {
         (testing::face().pair, contact)
     }
 
-    /// The disc comes from an arc that it was behind, and is 0.02 in front of the feature at the start.
+    /// A disc that comes from an arc behind which it was; at the start it is 0.02 in front of the feature.
     fn behind_a_rise((mut pair, mut disc): (Pair, DiscContact)) -> (Pair, DiscContact) {
         let at = between(RowForm::End, &U0, &U0);
         pair.allowed[0] = 0.02 - disc.constraint(pair, &at).gap;

@@ -18,7 +18,7 @@ use crate::model::{
 use crate::vectors::{cross, difference, dot, length};
 
 /// Nodes at one place that equations join, for example at both ends of a pre-tension section. Joined nodes are one
-/// vertex of the surface, which does not touch the segments there.
+/// vertex of the surface; this vertex does not touch the segments at its place.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct JoinedNodes(HashMap<usize, Vec<usize>>);
 
@@ -44,7 +44,7 @@ impl JoinedNodes {
 pub struct ContactSurfaces {
     /// Slave nodes.
     pub slaves: Vec<usize>,
-    /// Faces of the slave surface; if the surface is made of nodes, the exterior faces at them.
+    /// Faces of the slave surface; if the surface is made of nodes, the exterior faces at these nodes.
     pub slave_faces: Vec<[usize; 2]>,
     /// For every slave node the nodes before and after it on its own surface, if both exist.
     pub adjacent: Vec<Option<[usize; 2]>>,
@@ -55,8 +55,8 @@ pub struct ContactSurfaces {
     /// For every segment the segment that ends at its start, if any.
     pub previous: Vec<Option<usize>>,
     /// For every segment whether the body has a sharp corner at its end b in the reference
-    /// configuration: an angle below 120 degrees. At any other corner, legs that fold onto each
-    /// other are a closed concave corner.
+    /// configuration: an angle below 120 degrees. At a corner that is not sharp, legs that fold onto each other are a
+    /// closed concave corner.
     pub sharp_corners: Vec<bool>,
     /// Bulge of every segment, for nodes.
     pub bulges: Vec<Bulge>,
@@ -227,7 +227,7 @@ impl ContactSurfaces {
         self
     }
 
-    /// Makes the contact one from surface to surface; `middles` are the ends of sides by their mid-side nodes.
+    /// Makes the contact surface to surface; `middles` gives the ends of a side for each mid-side node.
     pub fn from_surface_to_surface(
         mut self,
         mesh: &Mesh,
@@ -284,8 +284,7 @@ impl ContactSurfaces {
         self
     }
 
-    /// Whether the surface has a corner between the segments `i` and `j`, the next one, at the
-    /// positions `x`.
+    /// Whether the surface has a corner between the segment `i` and the next segment `j`, at the positions `x`.
     fn has_corner(&self, x: &[[f64; 2]], i: usize, j: usize) -> bool {
         let [e, f] = [i, j].map(|i| {
             let [a, b] = self.segments[i].map(|node| x[node]);
@@ -343,7 +342,7 @@ impl ContactSurfaces {
         length(difference(x[a], x[b]))
     }
 
-    /// The corners of both surfaces; if a surface touches itself, its corners once.
+    /// The corners of both surfaces; if a surface touches itself, its corners are listed once.
     fn corners_of_both(&self, x: &[[f64; 2]], is_self_contact: bool) -> Vec<Corners> {
         let chains = |faces: &[[usize; 2]]| {
             ContactSurfaces::with_joined(Vec::new(), &[], faces.to_vec(), &self.joined)
@@ -382,7 +381,7 @@ impl ContactSurfaces {
             .collect()
     }
 
-    /// Ends of the surface of the segments, and its nodes at convex vertices that turn by more than 20 degrees, in
+    /// Ends of the surface of the segments, and the nodes at its convex vertices that turn by more than 20 degrees, in
     /// increasing order.
     fn corner_nodes(&self, x: &[[f64; 2]]) -> Vec<usize> {
         let mut nodes = Vec::new();

@@ -1,5 +1,5 @@
-//! Interior of the bodies: whether a straight line from a segment stays in the elements behind it.
-//! See docs/theory/geometry.md.
+//! Interior of the bodies: whether a straight line from a segment stays in the elements behind the segment. See
+//! docs/theory/geometry.md.
 //!
 //! The line is followed from element to element through their common sides. The elements on the
 //! line tell a node on the far side of a thin body from a node of another part that has penetrated
@@ -10,7 +10,7 @@ use super::tolerances::{INSIDE_ROUND_OFF, NEARER_HALF};
 use crate::model::{Element, ElementsAtNodes, Mesh};
 use crate::vectors::{difference, dot};
 
-/// The convex parts of the elements of a mesh, here called elements, which are found by the segments of their outlines.
+/// The convex parts of the elements of a mesh, here called elements; the segments of their outlines find them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Interior {
     /// Nodes around every element, one element after the other; each segment leads from a node to the next, with the
@@ -73,8 +73,8 @@ impl Interior {
 
     /// Whether a node behind the line of a segment has penetrated the body there through this
     /// segment, at the positions `at`. The node has penetrated the body if it lies in the body,
-    /// belongs to none of the elements on the line, and is nearer to the segment than to the far
-    /// side. Without an element behind the segment, everything there is inside.
+    /// does not belong to any element on the line, and is nearer to the segment than to the far side. If there is no
+    /// element behind the segment, every place behind it counts as inside.
     pub fn takes_in(
         &self,
         segment: [usize; 2],
@@ -85,8 +85,7 @@ impl Interior {
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
-    /// Whether the node lies in the body, at any depth: it may have entered through another
-    /// segment.
+    /// Whether the node lies in the body, at any depth: the node may have entered through another segment.
     pub fn contains(
         &self,
         segment: [usize; 2],
@@ -97,9 +96,9 @@ impl Interior {
             .is_none_or(|line| self.is_foreign(&line, node))
     }
 
-    /// Whether a point of a slave face between nodes has penetrated the body through this segment; `xi` and `gap` are
-    /// its place and gap at the segment. Place and gap may be relative to the straight line that stands for a curved
-    /// side; the sides of the element are as far from this line as its mid-side nodes.
+    /// Whether a point of a slave face between nodes has penetrated the body through a segment; `xi` and `gap` are its
+    /// place and gap at the segment. Place and gap may be relative to the straight line that stands for a curved side.
+    /// The mid-side node tells how far the side of the element is from this line.
     pub fn takes_in_point(
         &self,
         segment: [usize; 2],
@@ -114,8 +113,8 @@ impl Interior {
             .is_none_or(|line| face.iter().all(|&node| self.is_foreign(&line, node)))
     }
 
-    /// Whether a node behind the line of a segment belongs to the body there: it is a node of the
-    /// far side.
+    /// Whether a node behind the line of a segment belongs to the body behind the segment, so it is a node of the far
+    /// side.
     pub fn joins(&self, segment: [usize; 2], node: usize, at: impl Fn(usize) -> [f64; 2]) -> bool {
         let line = self.line(segment, node, 1.0, at);
         line.is_some_and(|line| line.stays && self.has_node(&line, node))
@@ -197,7 +196,7 @@ impl Interior {
         (start <= end).then_some([start, end])
     }
 
-    /// Whether a line stays in the body and the node belongs to none of the elements on it.
+    /// Whether a line stays in the body and the node does not belong to any element on the line.
     fn is_foreign(&self, line: &CrossedElements, node: usize) -> bool {
         line.stays && !self.has_node(line, node)
     }

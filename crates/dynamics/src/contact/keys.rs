@@ -29,14 +29,14 @@ impl SlaveKey {
 }
 
 /// Key of a constraint through passes and increments. The rest of the program compares keys and asks for their common
-/// parts; it does not know of what they are made.
+/// parts, without knowledge of what a key is made of.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
 )]
 pub struct ConstraintKey {
     pub(super) slave: SlaveKey,
-    /// Number of the segment in its contact; at a corner, of the segment before the corner. With surface to surface:
-    /// number of the run of segments; it is larger on the second side of a corner.
+    /// Number of the segment in its contact; at a corner, of the segment before the corner. With surface to surface
+    /// this is the number of the run of segments, which is larger on the second side of a corner.
     pub(super) segment: usize,
 }
 
@@ -55,7 +55,7 @@ impl ConstraintKey {
 /// A slave node and a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NodeAtSegment {
-    /// Key of the constraint of the two.
+    /// Key of the constraint of the slave node at the segment.
     pub key: ConstraintKey,
     /// The slave node and the ends of the segment.
     pub nodes: [usize; 3],

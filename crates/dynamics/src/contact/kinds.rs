@@ -29,7 +29,7 @@ impl Constraint {
     }
 
     /// Derivative of the contact force with respect to the iterate, d(Bn^T Pn + Bt^T Pt)/dU at constant Pn and Pt, over
-    /// the dofs of the constraint (force/length); it is not symmetric with friction.
+    /// the dofs of the constraint (force/length). With friction the matrix is not symmetric.
     pub fn change(&self, force: [f64; 2], at: &Configurations) -> DMatrix<f64> {
         match &self.source.target {
             Target::Segment(segment) => segment.change(self, force, at),
@@ -39,8 +39,7 @@ impl Constraint {
         }
     }
 
-    /// Gap of the constraint between other configurations, and the length to which it is relative
-    /// there.
+    /// Gap of the constraint between other configurations, and the length to which this gap is relative.
     pub fn gap_and_scale(&self, at: &Configurations) -> (f64, f64) {
         match &self.source.target {
             Target::Segment(segment) => segment.gap_and_scale(&self.source.pair, at),
@@ -60,14 +59,14 @@ impl Constraint {
         self.made_of(self.source.clone(), at)
     }
 
-    /// The same constraint between other configurations; the same target holds its node at their start.
+    /// The same constraint between other configurations, with the same target of its node at their start.
     pub fn untilted(&self, at: &Configurations) -> Self {
         let PairTarget { pair, target } = self.source.clone();
         let target = target.untilted();
         self.made_of(PairTarget { pair, target }, at)
     }
 
-    /// The same constraint at the start, with the target that holds its node there.
+    /// The same constraint at the start, with the target of its node at the start.
     pub fn at_start(&self, start: &Configurations) -> Self {
         Constraint {
             shrinkage: self.shrinkage,
@@ -85,13 +84,13 @@ impl Constraint {
         }
     }
 
-    /// Whether the gap is a mean over points of slave faces, not the gap of one node.
+    /// Whether the gap is a mean gap over points of slave faces, not the gap of one node.
     pub fn is_mean(&self) -> bool {
         self.source.target.mean().is_some()
     }
 
-    /// Lift of the slave node over its segment at the start of the increment; `None` for a mean, which is not the gap
-    /// of one node.
+    /// Lift of the slave node over its segment at the start of the increment; `None` for a mean gap (surface to
+    /// surface).
     pub fn lift_at_start(&self) -> Option<Lift> {
         let bulge = match &self.source.target {
             Target::Segment(contact) => contact.segment.bulge,
@@ -117,7 +116,7 @@ impl Constraint {
         }
     }
 
-    /// Keys of the slave node at each of its segments; at a corner there are two.
+    /// Keys of the slave node at each of its segments; at a corner there are two keys.
     pub fn segments(&self) -> impl Iterator<Item = ConstraintKey> {
         let behind = match &self.source.target {
             Target::Corner(corner) => Some(ConstraintKey {
@@ -129,13 +128,14 @@ impl Constraint {
         [Some(self.key), behind].into_iter().flatten()
     }
 
-    /// The slave node whose state the constraint tells: the node that names a mean, the centre of a disc.
+    /// The slave node whose state the constraint tells: for a mean gap the node that names the constraint, for a disc
+    /// its centre.
     pub fn named_slave(&self) -> usize {
         self.source.pair.slave
     }
 
-    /// The master nodes of a mean, each with |Bn| there, its part of the normal force. Other kinds of constraints
-    /// return no master nodes.
+    /// The master nodes of a mean gap (surface to surface), each with its part |Bn| of the normal force. Other kinds of
+    /// constraints return no master nodes.
     pub fn shares_of_masters(&self) -> impl Iterator<Item = (usize, f64)> {
         let normal = &self.force_rows.normal;
         let first = match &self.source.target {
@@ -147,7 +147,7 @@ impl Constraint {
     }
 
     /// Whether the constraint keeps `node` out of a body; the node is its slave node, or the corner that this node
-    /// meets. A mean does not keep any single node out.
+    /// meets. A constraint of a mean gap keeps no single node out.
     pub fn keeps_out(&self, node: usize) -> bool {
         let slave = self.source.pair.slave;
         match &self.source.target {
@@ -157,7 +157,8 @@ impl Constraint {
         }
     }
 
-    /// Whether the slave node of a pair is beyond the ends of its segment in the iterate; at a corner it is not.
+    /// Whether the slave node of a pair is beyond the ends of its segment in the iterate; at a corner the result is
+    /// false.
     pub fn is_beyond_ends(&self, at: &Configurations) -> bool {
         let [s, a, b] = at.iterate(self.pair().nodes);
         let is_beyond = || !(0.0..=1.0).contains(&project(s, a, b).xi);
@@ -167,8 +168,8 @@ impl Constraint {
         }
     }
 
-    /// Whether the slave node projects between the ends of its segment at the given positions, and on neither end. The
-    /// result is always true for a point of a mean.
+    /// Whether the slave node projects between the ends of its segment at the given positions, and on neither end. For
+    /// a constraint of a mean gap the result is always true.
     pub fn is_over(&self, at: Positions) -> bool {
         let is_over = || {
             let xi = at.place(self.pair().nodes).xi;

@@ -1,5 +1,5 @@
 //! Lists whose memory is used again. Every pass drops the constraints of the last pass and makes new ones with about as
-//! many points and dofs. A new list begins in the memory of one that was dropped.
+//! many points and dofs. A new list begins in the memory of a list that was dropped.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -37,7 +37,7 @@ pub(super) use entries;
 
 entries!(f64, usize);
 
-/// A list that begins in the memory of one that was dropped in the same thread.
+/// A list that begins in the memory of a list that was dropped in the same thread.
 pub struct Recycled<T: Entry>(Vec<T>);
 
 impl<T: Entry> Recycled<T> {
@@ -127,10 +127,10 @@ impl<'de, T: Entry + Deserialize<'de>> Deserialize<'de> for Recycled<T> {
     }
 }
 
-/// Number of values that are stored in place: those of the eight dofs of a corner.
+/// Number of values that are stored in place: one for each of the eight dofs of a corner.
 pub(super) const IN_PLACE: usize = 8;
 
-/// One value for every dof of a constraint: stored in place up to the eight dofs of a corner, in a list beyond.
+/// One value for every dof of a constraint: up to eight values (corner) are stored in place, more values in a list.
 #[derive(Clone)]
 pub enum PerDof<T: Entry> {
     /// Up to eight values, in place, and their number.

@@ -19,18 +19,17 @@ impl CornerContact {
     /// The constraint of a slave node at the corner b between the segments from a to b and from b to c; its nodes are
     /// s, a, b, c.
     ///
-    /// With the weight w of the corner, the segment i before it and the segment j behind it, eq.
-    /// (10.3):
+    /// With the weight w, the segment i before and the segment j behind the corner, gap and rows are, eq. (10.3):
     ///
     /// ```text
     /// g  = ((1 - w) g_i + w g_j)/m        m = |(1 - w) n_i + w n_j|
     /// Bn = ((1 - w) Bn_i + w Bn_j)/m      Bt = ((1 - w) Bt_i + w Bt_j)/m
     /// ```
     ///
-    /// The blended normal has the length 1. Both g_i and g_j contain the overlap a that a fit allows, eq. (3.15). The
-    /// weights are constant in a pass, so rows and gap stay exact differences. With other weights than in the last
-    /// increment, a closed corner may begin with a small overlap; the overlap stays, since pushing it out would do
-    /// work.
+    /// The blended normal has the length 1. The gaps g_i and g_j to both segments contain the overlap a that a fit
+    /// allows, eq. (3.15). The weights are constant in a pass, so rows and gap stay exact differences. With other
+    /// weights than in the last increment, a closed corner may begin with a small overlap; this overlap stays, since
+    /// pushing the node out would do work.
     pub(super) fn constraint(self, pair: Pair, at: &Configurations) -> Constraint {
         // g = ((1 - w) g_i + w g_j)/m, Bn and Bt likewise, eq. (10.3)
         let corner = self.corner();
@@ -61,7 +60,7 @@ impl CornerContact {
     }
 }
 
-/// Lengths m of the blended normal and tangential rows at s; with straight faces both are 1.
+/// Lengths m of the blended normal and tangential rows at s; with straight faces both lengths are 1.
 fn lengths_of_rows(corner: Corner, sides: &[SegmentRows; 2]) -> [f64; 2] {
     let length = |of: fn(&SegmentRows) -> [f64; 2]| {
         let [p, q] = sides.each_ref().map(of);

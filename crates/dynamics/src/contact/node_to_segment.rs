@@ -26,7 +26,7 @@ impl SegmentRows {
         (self.bend.as_ref()).map_or([self.force, self.derivative], |bend| bend.chord)
     }
 
-    /// Length of the normal row relative to that of a straight face: factor of the friction bound, eq. (3.31).
+    /// Length of the normal row relative to the length for a straight face: factor of the friction bound, eq. (3.31).
     pub fn stretch(&self) -> f64 {
         self.bend.as_ref().map_or(1.0, |bend| bend.stretch)
     }
@@ -39,9 +39,9 @@ struct Arms {
     e: [f64; 2],
     /// |e|
     length: f64,
-    /// pi1 = r.e
+    /// Product pi1 = r.e
     dot: f64,
-    /// pi2 = r x e
+    /// Product pi2 = r x e
     cross: f64,
 }
 
@@ -74,7 +74,7 @@ impl SegmentContact {
         }
     }
 
-    /// Gap of the constraint, and the length to which it is relative.
+    /// Gap of the constraint, and the length to which this gap is relative.
     pub(super) fn gap_and_scale(&self, pair: &Pair, at: &Configurations) -> (f64, f64) {
         let [s, a, b] = at.iterate(self.nodes(pair));
         let projection = self.segment.bulge.below(project(s, a, b));
@@ -87,7 +87,7 @@ impl SegmentContact {
     /// Bn <- Bn + kappa Bt,   kappa = (g0 - h0)/(Bt d),   h0 = max(min(g0, g0_i), 0)
     /// ```
     ///
-    /// With the tilt Bn d is g1 - h0, so contact adds no energy.
+    /// With the tilted row, Bn d = g1 - h0 (end gap less start gap as the node is counted), so contact adds no energy.
     pub(super) fn tilt(&self, pair: &Pair, at: &Configurations) -> f64 {
         let from = self.from.filter(|_| at.form == RowForm::DiscreteGradient);
         let Some(from) = from else { return 0.0 };
@@ -132,7 +132,7 @@ pub(super) fn segment_rows(
 }
 
 /// Projection and rows between the positions of s, a and b at start and end. `height` is the distance of s from the
-/// segment when the constraint is closed; end rows use it, discrete gradients do not.
+/// segment when the constraint is closed; end rows use this height, discrete gradients do not.
 pub(super) fn rows_between(
     places: [[[f64; 2]; 3]; 2],
     (height, bulge): (f64, &Bulge),
@@ -182,8 +182,8 @@ fn displacements([start, end]: &[[[f64; 2]; 3]; 2]) -> [f64; 6] {
 /// dxi = (e_t.dr - xi e_t.de)/l + g (e_n.de)/l²,  dl = e_t.de
 /// ```
 ///
-/// Derivatives of discrete gradients are differences of gap rows. End rows turn with the segment: dBn d = Bn -
-/// (e_t.w)/l D - (e_n.d_e) dxi.
+/// With discrete gradients the derivatives follow from differences of the gap rows. End rows turn with the segment, so
+/// the derivative of Bn d is dBn d = Bn - (e_t.w)/l D - (e_n.d_e) dxi.
 fn of_chord(rows: &SegmentRows, (form, d): (RowForm, &[f64; 6])) -> OfChord {
     let ([force, derivative], p) = (rows.chord(), &rows.projection);
     let (l, [t, n]) = (p.length, [p.tangent, p.normal]);
@@ -207,8 +207,8 @@ fn of_chord(rows: &SegmentRows, (form, d): (RowForm, &[f64; 6])) -> OfChord {
 }
 
 /// Force rows of the end configuration, eq. (3.4). The normal row is e_n at s, -(1 - xi) e_n at a, -xi e_n at b. The
-/// tangential row is the same with e_t, plus the couple (h/l) D, by which friction at the height h has no moment. The
-/// normal row is the derivative of the gap; the derivative of the slip is eq. (3.9).
+/// tangential row is the normal row with e_t for e_n, plus the couple (h/l) D, which cancels the moment of friction at
+/// the height h. The normal row is the derivative of the gap; the derivative of the slip is eq. (3.9).
 fn end_rows(
     p: &Projection,
     height: f64,
@@ -241,7 +241,7 @@ fn end_rows(
     (force, derivative)
 }
 
-/// D/l = (e_n at b, -e_n at a)/l: the couple of the end rows for a force at unit height.
+/// Couple D/l = (e_n at b, -e_n at a)/l of the end rows for a force at unit height.
 pub(super) fn couple(p: &Projection) -> [f64; 6] {
     nodal([0.0; 2], p.normal.map(|n| n / p.length))
 }
@@ -249,8 +249,8 @@ pub(super) fn couple(p: &Projection) -> [f64; 6] {
 /// Discrete gradients between the start and the end of the increment.
 ///
 /// The gap g = pi2/sqrt(pi3) and the projection xi = pi1/pi3 depend on pi1 = r.e, pi2 = r x e,
-/// pi3 = e.e, eq. (7.1), which are quadratic in the positions. The gradients of these products at
-/// the mid configuration are therefore exact difference quotients.
+/// pi3 = e.e, eq. (7.1), which are quadratic in the positions. The gradients of pi1, pi2 and pi3 at the mid
+/// configuration are therefore exact difference quotients.
 fn discrete_gradient_rows(start: &Arms, end: &Arms) -> RowPair<6> {
     let mean = |p: [f64; 2], q: [f64; 2]| [(p[0] + q[0]) / 2.0, (p[1] + q[1]) / 2.0];
     let (l0, l1) = (start.length, end.length);
@@ -287,7 +287,7 @@ fn derivatives_of_differences(start: &Arms, end: &Arms) -> RowPair<6> {
 }
 
 impl Arms {
-    /// The arms for the positions of s, a and b.
+    /// The arms r and e for the positions of s, a and b.
     fn new([s, a, b]: [[f64; 2]; 3]) -> Self {
         let (r, e) = (difference(a, s), difference(a, b));
         Arms {

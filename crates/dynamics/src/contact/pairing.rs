@@ -22,7 +22,8 @@ pub enum SlaveChoice {
     /// All slave nodes.
     #[default]
     All,
-    /// The slave nodes that may touch a segment after the next correction, and all whose pairs are means or discs.
+    /// The slave nodes that may touch a segment after the next correction, and all slave nodes with a mean gap (surface
+    /// to surface) or a disc.
     Near,
     /// The others.
     Far,
@@ -43,14 +44,14 @@ impl SlaveChoice {
 
 /// Writes the pairs of the chosen slave nodes of all contacts, with increasing keys, between the displacements `u0` of
 /// the start and `u` of an iterate, which the search covers. `before` are the constraints of the last pass, also with
-/// increasing keys. `closed_at_start` are the pairs closed at the start. With `kept`, targets are kept up to this
-/// overrun beyond their ends (segment lengths), even if the node is now at others: passes that go to and fro across a
-/// corner converge with it.
+/// increasing keys. `closed_at_start` are the pairs closed at the start. Nodes keep targets up to the overrun `kept`
+/// beyond the ends (segment lengths), even if they are at other targets, so that passes converge that go to and fro
+/// across a corner.
 ///
 /// Pairs of contact from surface to surface are points of slave faces, whose rows have the given form.
 ///
-/// A node that has just left its segment by a little and finds no other target keeps it: the end of
-/// the increment decides whether the node has slid off, not one of its passes.
+/// A node that has just left its segment by a little and finds no other target keeps this segment. The end of the
+/// increment decides whether the node has slid off, not one of the passes.
 pub fn find_targets(
     search: &Search,
     [u0, u]: [&[f64]; 2],
@@ -117,7 +118,7 @@ pub fn find_targets(
     remove_twins(&corners, pairs);
 }
 
-/// Writes only the pairs that are means (surface to surface), between the displacements `u0` and `u`, with increasing
+/// Writes only the pairs with a mean gap (surface to surface), between the displacements `u0` and `u`, with increasing
 /// keys.
 pub fn find_means(
     search: &Search,
@@ -132,9 +133,8 @@ pub fn find_means(
     }
 }
 
-/// Keeps those targets of the last pass that the node is still over, and adds those of the found targets that are
-/// beyond them. Corners get the weights of the iterate; the vertex of a hollow that the node has left becomes its two
-/// segments.
+/// Keeps the targets of the last pass that the node is still over, and adds the found targets that are beyond these.
+/// Corners get the weights of the iterate; the vertex of a hollow that the node has left becomes its two segments.
 fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut ContactTargets) {
     targets.retain(|target| node.is_over(target, beyond));
     for place in 0..targets.len() {
@@ -158,9 +158,10 @@ fn keep(node: &SlaveNode, found: &ContactTargets, beyond: f64, targets: &mut Con
     targets.dedup_by_key(|target| target.segment);
 }
 
-/// The pair of a slave node and a target. With surface to surface the overlap of a corner at the start is allowed, like
-/// that of a mean: a_j = max(-g_j0, 0), eq. (7.9). A corner that has slid on past a convex vertex lay behind the line
-/// of its new segment at the start; its allowed overlap is that in the segment on which it was closed.
+/// The pair of a slave node and a target. With surface to surface a corner may keep its overlap at the start, as a mean
+/// gap may: a_j = max(-g_j0, 0), eq. (7.9). A corner that has slid on past a convex vertex lay behind the line of its
+/// new segment at the start. The allowed overlap of such a corner is its overlap with the segment on which it was
+/// closed.
 fn pair_target(
     listed: &ListedSlave,
     target: ContactTarget,

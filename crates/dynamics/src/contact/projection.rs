@@ -62,10 +62,10 @@ pub(super) fn position_round_off(s: [f64; 2]) -> f64 {
     POSITION_ROUND_OFF * largest(&s)
 }
 
-/// Rise g0 - h0 of eq. (7.6) (length) for a node at `s` that has slid on to another segment. The rise is the gap to the
-/// new segment at the start, of the given length, less the gap that the node is counted with; `before` is the gap to
-/// its old segment. A rise within the round-off of closed gaps and positions is set to zero: divided by the slip of a
-/// node that has come back, it would tilt the force at random.
+/// Rise g0 - h0 of eq. (7.6) (length) for a node at `s` that has slid on to another segment. The rise is the node's gap
+/// at the start to the new segment (of the given length) less h0: the smaller of this gap and the gap `before` to the
+/// old segment, but at least 0. A rise within the round-off of closed gaps and positions is set to zero: divided by the
+/// slip of a node that has come back, such a rise would tilt the force at random.
 pub(super) fn rise((gap, length): (f64, f64), before: f64, s: [f64; 2]) -> f64 {
     let rise = gap - gap.min(before).max(0.0);
     let round_off = (SOLVED_GAP * length).max(position_round_off(s));

@@ -39,9 +39,9 @@ pub fn all_segments(surfaces: &ContactSurfaces) -> impl Iterator<Item = Candidat
 /// Contact search with hierarchies of circular territories.
 ///
 /// Each slave node and each segment has a circle that is grown by a margin; each contact has two hierarchies of such
-/// circles. Entities with overlapping circles are candidates; the lists are valid until an entity has moved further
-/// than its margin. Positions and motions are relative to the mean of the contact's nodes, since a common motion of two
-/// bodies brings no pair together.
+/// circles. Entities with overlapping circles are candidates; the lists of candidates are valid until an entity has
+/// moved further than its margin. Positions and motions are relative to the mean of the contact's nodes, since a common
+/// motion of two bodies brings no pair together.
 pub struct Search<'m> {
     x: &'m [[f64; 2]],
     territories: Vec<Territory<'m>>,
@@ -105,7 +105,7 @@ impl<'m> Search<'m> {
     /// Transfers the lists, and the positions for which they are valid.
     ///
     /// # Errors
-    /// Returns an error if the archive is of other contacts.
+    /// The archive belongs to other contacts.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         for territory in &mut self.territories {
             let Territory {
@@ -171,8 +171,8 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Distance up to which nodes at rest pair with segments at rest, the least of all contacts (length); infinite
-    /// without a contact. A removed contact, which has no nodes and no segments, does not count.
+    /// Distance up to which nodes at rest pair with segments at rest: the smallest over all contacts (length); infinite
+    /// without a contact. Contacts that a step has removed do not count.
     pub fn reach(&self) -> f64 {
         let acts = |territory: &&Territory| {
             let ContactSurfaces {
@@ -267,9 +267,9 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         self.territory.allowed(self.number)
     }
 
-    /// The allowed overlap at start and end; `lies` tells whether the node lies in a mean that was closed before the
-    /// increment. A corner of a rigid body outside all closed means may not sink in: the body rocks and lands on its
-    /// corners.
+    /// The allowed overlap at start and end; `lies` tells whether the node belongs to a mean gap that was closed before
+    /// the increment. A corner of a rigid body may not sink in outside all closed mean gaps: the body rocks and lands
+    /// on its corners.
     pub fn allowed_where(&self, lies: impl Fn(usize) -> bool) -> [f64; 2] {
         let allowed = self.allowed();
         let rocks = |corners: &&Corners| corners.are_rigid[self.number] && !lies(self.node());
@@ -292,8 +292,8 @@ impl<'a, 'm> ListedSlave<'a, 'm> {
         (self.territory.corners).is_some_and(|corners| corners.are_of_master)
     }
 
-    /// Whether the slave node meets segments by itself and not in a mean: it is a node, or a corner of contact from
-    /// surface to surface.
+    /// Whether the slave node meets segments by itself and not in a mean gap: this holds with node to surface, and for
+    /// corners with surface to surface.
     pub fn meets_segments(&self) -> bool {
         self.surfaces.slave_segments.is_none()
     }
@@ -358,7 +358,7 @@ pub struct Territory<'m> {
     candidates: Vec<u32>,
     /// Start of the list of each slave node, and the end of the last list.
     starts: Vec<usize>,
-    /// The candidates as pairs, in the order in which they are found.
+    /// The candidates as pairs of slave node and segment, in the order in which they are found.
     found: Vec<[u32; 2]>,
     /// Overlaps that a fit allows the slave nodes at the start and at the end of the increment (length); empty without
     /// a fit.
@@ -378,7 +378,7 @@ pub(super) type Cells = Recycled<(f64, f64, usize)>;
 entries!((f64, f64, usize));
 
 /// Segments of one run of the master that a slave face faces at the start of the increment, and the parts of the face
-/// over them there.
+/// over these segments.
 pub(super) struct FacedRun {
     pub face: usize,
     pub segments: Faced,
@@ -393,7 +393,8 @@ struct FacedAtStart {
 }
 
 impl<'m> Territory<'m> {
-    /// The territories of a contact and of its corners; the numbers of the corners follow those of the slave nodes.
+    /// The territories of a contact and of its corners; the numbers of the corners follow the numbers of the slave
+    /// nodes.
     fn of_contact(
         contact: usize,
         (surfaces, reach): (&'m ContactSurfaces, f64),
@@ -456,7 +457,7 @@ impl<'m> Territory<'m> {
     }
 
     /// Sets the overlaps that a fit allows the slave nodes of the contact; corners, which a fit does not name, get the
-    /// largest of them.
+    /// largest of these overlaps.
     fn allow(&mut self, allowed: &[[f64; 2]]) {
         self.is_fitted = allowed.iter().any(|[_, end]| *end != 0.0);
         self.allowed = match self.corners {

@@ -15,15 +15,15 @@ use super::tolerances::{
 };
 use crate::vectors::angle;
 
-/// Segments near a node; usually there are few.
+/// Segments near a node; usually there are few segments.
 type Segments = SmallVec<[usize; 8]>;
 
 /// Selection of the targets of a slave node.
 ///
 /// Near a concave corner a node outside the body is in front of both segments; near a convex corner
-/// it is in front of at least one. Every segment that the node faces therefore constrains it, but
-/// only one of a run of segments round convex corners. The node was in front of the segments in its
-/// targets at the start of the increment, so the contact never adds energy.
+/// it is in front of at least one. Every segment that the node faces constrains it, except in a run of segments round
+/// convex corners, of which only one constrains it. The node was in front of the segments in its targets at the start
+/// of the increment, so the contact never adds energy.
 impl SlaveNode<'_> {
     /// The targets of the node in the order of their segments; the candidates must come in this
     /// order.
@@ -80,8 +80,7 @@ impl SlaveNode<'_> {
         is_over && (target.from).is_none_or(|i| self.tilts_gently(i, target.segment))
     }
 
-    /// Whether two targets belong to one run of segments round convex corners, so one of them is
-    /// enough.
+    /// Whether two targets belong to one run of segments round convex corners, so one target is enough.
     pub fn is_same_face(&self, one: &ContactTarget, other: &ContactTarget) -> bool {
         one.segment == other.segment
             || one.segments().any(|i| {
@@ -93,8 +92,8 @@ impl SlaveNode<'_> {
             })
     }
 
-    /// Lists the segments into which the node projects, and both segments at a corner if the node projects into
-    /// neither.
+    /// Lists the segments into which the node projects, and both segments at a corner if the node projects into neither
+    /// segment.
     fn list_faced(&self, candidates: impl Iterator<Item = Candidate>, faced: &mut Segments) {
         let s = self.position();
         for Candidate { segment: i, reach } in candidates {
@@ -129,8 +128,8 @@ impl SlaveNode<'_> {
         }
     }
 
-    /// The faced segments, grouped into runs of neighbours with straight or convex corners between
-    /// them.
+    /// The segments that the node faces, grouped into runs of neighbours with straight or convex corners between
+    /// neighbours.
     fn runs(&self, faced: &[usize]) -> SmallVec<[Segments; 2]> {
         let is_faced = |i: &usize| faced.binary_search(i).is_ok();
         let next = |i: usize| {
@@ -161,8 +160,8 @@ impl SlaveNode<'_> {
         runs
     }
 
-    /// The segment of a run that constrains the node: one that it is in front of now, among those
-    /// that it was in front of at the start.
+    /// The segment of a run that constrains the node: a segment in front of which the node is in the iterate and was at
+    /// the start.
     fn choose(&self, run: &[usize]) -> Option<usize> {
         let gap = |i: usize| self.project(i).gap;
         let mut best: Option<usize> = None;
@@ -193,8 +192,8 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// The segment of a run over which the node lies, if it has slid there across gentle corners from another segment
-    /// that it was over at the start.
+    /// The segment of a run over which the node lies, if the node has slid there across gentle corners from another
+    /// segment over which it was at the start.
     fn slid_on(&self, run: &[usize]) -> Option<ContactTarget> {
         let is_within = |i: usize| (-SLID..=1.0 + SLID).contains(&self.xi(i));
         let slid_from = |i: usize| {
@@ -253,7 +252,7 @@ impl SlaveNode<'_> {
     }
 
     /// Whether the force on a node that has slid from segment i to j stays near the normal of j: its tilt kappa =
-    /// (g0_j - g0_i)/s is that of the surface between the two.
+    /// (g0_j - g0_i)/s is the slope of the surface between the two segments.
     fn tilts_gently(&self, i: usize, j: usize) -> bool {
         let (start, now) = (self.project_at_start(j), self.project(j));
         let slip = (start.length + now.length) / 2.0 * (now.xi - start.xi);
@@ -267,9 +266,9 @@ impl SlaveNode<'_> {
 
     /// The neighbour of segment `i` round a convex corner near the node, if the surface of the node does not face
     /// segment `i`. Where a corner slides over a corner, only the face that the node's surface faces constrains the
-    /// node; behind the other face lies the node's own body. At the start the node must have been over that face, or
-    /// near its end with half of one of its own faces over it: the long line of a punch does not stop a node beside the
-    /// punch.
+    /// node; behind the other face lies the node's own body. At the start the node must have been over the face of the
+    /// neighbour, or near its end with half of one of the node's own faces over this face. So the long line of a punch
+    /// does not stop a node beside the punch.
     fn adjacent_to_faced_away(&self, i: usize) -> Option<usize> {
         if self.is_opposite(i)? {
             return None;
@@ -302,9 +301,9 @@ impl SlaveNode<'_> {
         }
     }
 
-    /// The first segment before or after `from` on which the node projected at the start. The way
-    /// to that segment is round corners that are convex, or were at the start, and no longer than
-    /// twice the node's displacement.
+    /// The first segment before or after `from` on which the node projected at the start. The way from `from` to the
+    /// returned segment leads round corners that are convex or were so at the start, and is at most twice as long as
+    /// the node's displacement.
     fn walk(&self, from: usize, direction: Along) -> Option<usize> {
         let farthest = 2.0 * self.relative_displacement(from);
         let length = |i: usize| self.project(i).length;
@@ -349,7 +348,7 @@ impl SlaveNode<'_> {
             .flatten()
     }
 
-    /// The corner at an end of a segment, if the node meets it.
+    /// The corner at an end of a segment, if the node meets this corner.
     fn corner_target(&self, i: usize) -> Option<ContactTarget> {
         let xi = self.xi(i);
         let before = self.surfaces.previous[i].filter(|_| xi < CORNER_ZONE);
@@ -359,7 +358,8 @@ impl SlaveNode<'_> {
             .or_else(|| after.and_then(|j| self.corner_between(i, j)))
     }
 
-    /// The corner between the segments `i` and `j` if the node meets it, node against node, or the vertex of a face.
+    /// The corner between the segments `i` and `j`, if the node meets it as node against node or if it is the vertex of
+    /// a face.
     fn corner_between(&self, i: usize, j: usize) -> Option<ContactTarget> {
         let (p, q) = (self.project(i), self.project(j));
         // distance from the corner along the sum of both tangents, which is at most 2 long
@@ -406,11 +406,10 @@ impl SlaveNode<'_> {
         Some([before, after].map(|[x, y]| [y, -x]))
     }
 
-    /// Weight w of the second segment at a vertex. A vertex is that of a face, of a gentle hollow, or of a gentle
-    /// corner that meets a node in a hollow of its own face, as a pin meets a bore. At a vertex the gaps to both
+    /// Weight w of the second segment at a vertex. A vertex belongs to a face, to a gentle hollow, or to a gentle
+    /// corner that meets a node in a hollow of the node's own face, as a pin meets a bore. At a vertex the gaps to both
     /// segments are the same; the normal of only one segment would lean to one side, and round-off would choose the
-    /// segment. Returns `None` if the gaps differ, if the turn is larger, or if the node was behind one of the
-    /// segments.
+    /// segment. `None` if the gaps differ, if the turn is larger, or if the node was behind one of the segments.
     fn vertex_weight(&self, turn: f64, [(i, p), (j, q)]: [(usize, &Projection); 2]) -> Option<f64> {
         let round_off = position_round_off(self.position());
         let least = (CLOSED_GAP * p.length.min(q.length)).max(round_off);
@@ -420,8 +419,8 @@ impl SlaveNode<'_> {
         is_vertex.then_some(0.5)
     }
 
-    /// Whether a target of an earlier pass is the vertex of a hollow that is no longer found: the node has left it
-    /// towards one of its segments, and the body lies behind both.
+    /// Whether a target of an earlier pass is the vertex of a hollow that the selection no longer finds: the node has
+    /// left the vertex towards one of its segments, and the body lies behind both segments.
     pub fn has_left_hollow(&self, target: &ContactTarget, found: &[ContactTarget]) -> bool {
         let is_hollow = |corner: Corner| {
             let is_same =

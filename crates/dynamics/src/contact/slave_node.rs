@@ -50,7 +50,7 @@ impl SlaveNode<'_> {
     }
 
     /// Whether the node's own surface faces the segment, that is, lies in front of the parallel to
-    /// the segment through the node. Returns `None` for a node without neighbours.
+    /// the segment through the node. `None` for a node without neighbours.
     pub(crate) fn is_opposite(&self, segment: usize) -> Option<bool> {
         let node = self.node();
         let normal = self.project(segment).normal;
@@ -63,8 +63,8 @@ impl SlaveNode<'_> {
         Some(adjacent.iter().all(is_in_front))
     }
 
-    /// Sine by which the neighbours of the node were at least in front of the parallel to a segment through the node,
-    /// at the start. The sine is larger for the segment that the node's surface faced better.
+    /// Sine of the least angle by which the neighbours of the node were, at the start, in front of the parallel to a
+    /// segment through the node. The sine is larger for the segment that the node's surface faced better.
     pub(crate) fn faced_at_start(&self, segment: usize) -> f64 {
         let (node, normal) = (self.start_position(), self.project_at_start(segment).normal);
         let sine = |adjacent: usize| {
@@ -109,13 +109,13 @@ impl SlaveNode<'_> {
     }
 
     /// Distance from the end of a segment, on which the node has the projection `p`, within which the other segment of
-    /// a concave corner constrains the node too (length).
+    /// a concave corner also constrains the node (length).
     pub(crate) fn corner_reach(&self, segment: usize, p: &Projection) -> f64 {
         CORNER_ZONE * p.length + 2.0 * self.displacement_at(segment, p)
     }
 
-    /// Whether the node was over a segment at the start, or nearer to its end than `near` (length) with half of one of
-    /// the node's own faces over the segment.
+    /// Whether the node was over a segment at the start, or nearer to an end of the segment than `near` (length) with
+    /// half of one of the node's own faces over the segment.
     pub(crate) fn was_over(&self, segment: usize, near: f64) -> bool {
         let [a, b] = self.surfaces.segments[segment].map(|n| self.start.of(n));
         let is_over =
@@ -147,7 +147,7 @@ impl SlaveNode<'_> {
     }
 
     /// Sine of the turn to the left from one segment to the next: positive at a convex corner,
-    /// negative at a concave one; 1 or -1 beyond a right angle.
+    /// negative at a concave corner; beyond a right angle it is 1 or -1.
     pub(crate) fn corner_sine(&self, i: usize, j: usize) -> f64 {
         self.corner_sine_at(self.now, i, j)
     }
@@ -179,7 +179,7 @@ impl SlaveNode<'_> {
         })
     }
 
-    /// Whether there is a concave corner between two segments, beyond a gentle turn.
+    /// Whether there is a concave corner between two segments, with more than a gentle turn.
     pub(crate) fn is_concave(&self, i: usize, j: usize) -> bool {
         if [i, j].iter().any(|&i| !self.surfaces.bulges[i].is_flat()) {
             return self.corner_sine(i, j) < -GENTLE_SINE;

@@ -18,11 +18,11 @@ pub struct SlaveSegments {
     pub at_nodes: Vec<Vec<Vec<[usize; 2]>>>,
     /// Number of the run of every master segment; a run is a chain of segments without a corner.
     pub runs: Vec<usize>,
-    /// Rank of every segment of a surface that touches itself: of two faces the one with the lower rank is the slave.
+    /// Rank of every segment of a surface that touches itself: of two faces the face with the lower rank is the slave.
     pub ranks: Option<Vec<usize>>,
     /// Ends of every slave face, followed by the ends of every master segment.
     pub vertices: Vec<[Vertex; 2]>,
-    /// Bulges of all slave faces and then of all master segments, for points.
+    /// Bulges, for points of faces, of all slave faces and then of all master segments.
     pub bulges: Vec<Bulge>,
     /// Whether the bodies are bodies of revolution, so faces are rings.
     pub are_rings: bool,

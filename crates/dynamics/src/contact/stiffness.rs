@@ -1,12 +1,12 @@
 //! Stiffness of a closed constraint in K*: the change of its nodal forces with the iterate, and the stiffening that
-//! keeps it closed. See docs/theory/time.md.
+//! keeps the constraint closed. See docs/theory/time.md.
 //!
 //! # Derivation
 //!
 //! With z = (r, e), r = x_s - x_a, e = x_b - x_a, the products of eq. (7.1) are pi_i = z.H_i z/2 with constant H_i, and
 //! grad pi_i = H_i z. The discrete gradients are Bn = alpha H2 zm + beta H3 zm and Bt = gamma H1 zm + delta H3 zm, eq.
-//! (7.2), eq. (7.3), with zm = (z0 + z1)/2. The derivatives of Bn and Bt with respect to the end are (rows: force;
-//! columns: d of the end)
+//! (7.2), eq. (7.3), with zm = (z0 + z1)/2. The derivatives of the discrete gradients Bn and Bt with respect to the end
+//! are (rows: force; columns: d of the end)
 //!
 //! ```text
 //! dBn = (alpha H2 + beta H3)/2 + H2 zm dalpha + H3 zm dbeta
@@ -30,7 +30,7 @@ use super::node_to_segment::{SegmentRows, couple};
 use super::projection::project;
 use super::target::{CornerContact, Pair, Segment, SegmentContact};
 
-/// Places of the dofs of s, a and b, and of s, b and c, among those of the constraint.
+/// Places, among the dofs of the constraint, of the dofs of s, a and b, and of the dofs of s, b and c.
 const PLACES: [[usize; 6]; 2] = [[0, 1, 2, 3, 4, 5], [0, 1, 4, 5, 6, 7]];
 
 impl SegmentContact {
@@ -109,7 +109,8 @@ fn add_block(k: &mut DMatrix<f64>, block: &Matrix6<f64>, places: &[usize; 6]) {
 }
 
 impl Constraint {
-    /// Gn^T Gn, plus Gt^T Gt if the constraint `sticks`, eq. (4.13), over its dofs (dimensionless).
+    /// Matrix Gn^T Gn, plus Gt^T Gt if the constraint `sticks`, by which a closed constraint stiffens K*, eq. (4.13),
+    /// over its dofs (dimensionless).
     pub fn stiffening(&self, sticks: bool) -> DMatrix<f64> {
         let rows = self.derivative_rows();
         let normal = DVector::from_column_slice(&rows.normal);
@@ -166,8 +167,7 @@ fn displacements(nodes: [usize; 3], at: &Configurations) -> [f64; 6] {
     })
 }
 
-/// Derivative of a force at a constant height, between the positions of s, a and b at start and
-/// end.
+/// Derivative of a contact force at a constant height; the positions are those of s, a and b at start and end.
 pub(super) fn changes_between(
     [start, end]: [[[f64; 2]; 3]; 2],
     height: f64,
@@ -250,7 +250,7 @@ fn changes_of_discrete_gradients(
     normal * pn + tangential * pt
 }
 
-/// H1, H2 and H3 of the products pi1 = r.e, pi2 = r x e and pi3 = e.e.
+/// Matrices H1, H2 and H3 of the products pi1 = r.e, pi2 = r x e and pi3 = e.e.
 fn products() -> [Matrix4<f64>; 3] {
     #[rustfmt::skip]
     let h1 = Matrix4::new(

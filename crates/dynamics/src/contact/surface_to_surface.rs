@@ -2,7 +2,7 @@
 //! points inside the slave faces. See docs/theory/geometry.md, From surface to surface.
 //!
 //! A point moves like a node: x_q = (1 - eta) x_1 + eta x_2 with constant eta is linear in the positions of the nodes,
-//! so its rows and stiffness are those of a node on a segment.
+//! so the point has the rows and the stiffness of a node on a segment.
 
 use std::array::from_fn;
 
@@ -38,16 +38,16 @@ struct Mean {
 }
 
 /// Adds the pairs of all slave nodes of a contact between start and iterate: one constraint for each side of a node
-/// over each run of master segments that covers it.
+/// over each run of master segments that covers this side.
 ///
 /// ```text
 /// g_j = (1/c_j) sum_q w_q N_j(eta_q) g_q,   c_j = sum_q w_q N_j(eta_q)    eq. (3.18)
 /// ```
 ///
-/// A cell has two Gauss points where N_j g_q is quadratic, or cubic with the radius; w_q is then half the reference
-/// length of the cell, times the radius of the point in bodies of revolution. Cells end on the bisectors of the
-/// master's vertices in the iterate. With discrete gradients the cells also end on the bisectors at the start, since
-/// rows are exact differences between the two configurations.
+/// A cell has two Gauss points where N_j g_q is quadratic, or cubic with the radius. The weight w_q is then half the
+/// reference length of the cell, times the radius of the point in bodies of revolution. Cells end on the bisectors of
+/// the master's vertices in the iterate. With discrete gradients the cells also end on the bisectors at the start,
+/// since rows are exact differences between the two configurations.
 pub(super) fn find_points(
     territory: &Territory,
     positions: [Positions; 2],
@@ -118,12 +118,13 @@ fn gauss_points<'b>(
     }
 }
 
-/// Removes means of a slave node that cover only a sliver beyond a convex vertex: their c_j is below 1e-2 of the
-/// largest c_j of the node.
+/// Removes mean gaps of a slave node that cover only a sliver beyond a convex vertex: their weight c_j is below 1e-2 of
+/// the largest weight of the node.
 ///
-/// At a vertex of the master both ends of a sliver's segment are behind the line of the largest mean's segment. At a
-/// vertex of the slave the face of a sliver leads away from that segment. The gap of a sliver is the gap of the node
-/// alone; the largest mean already keeps the faces there apart.
+/// At a vertex of the master both ends of the segment of a sliver are behind the line of the segment whose mean gap has
+/// the largest weight. At a vertex of the slave the face of a sliver leads away from the segment with the largest
+/// weight. The gap of a sliver is the gap of the node alone; the mean gap with the largest weight already keeps the
+/// faces apart there.
 fn leave_out_slivers(
     of_sides: &mut [SmallVec<[Mean; 2]>],
     slave: &SlaveSegments,
@@ -188,7 +189,7 @@ impl PointsOfFaces {
         &self.points[self.starts[face]..self.starts[face + 1]]
     }
 
-    /// The means of one side of a slave node, whose `faces` are given, with increasing runs.
+    /// The mean gaps of one side of a slave node, whose `faces` are given, with increasing runs.
     fn means(
         &self,
         slave: &SlaveSegments,
@@ -257,8 +258,8 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// For every face one entry for each run of the master, with the segments of the run that it
-    /// faces and its cells over them.
+    /// For every face one entry for each run of the master, with the segments of the run that the face faces, and the
+    /// cells of the face over these segments.
     fn all_faced(&self) -> Vec<FacedRun> {
         let mut all = Vec::new();
         for face in 0..self.slave.ends.len() {
@@ -314,8 +315,7 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// A point that was over segment i at the start and is over j in the iterate, with the number
-    /// j.
+    /// A point that was over segment i at the start and is over segment j in the iterate; the number is j.
     fn point(
         &self,
         face: usize,
@@ -374,9 +374,9 @@ impl<'a> Finder<'a> {
     }
 
     /// Whether a face was in front of a segment at the start, or in front of another segment from which it may slide on
-    /// to this one, or has penetrated the body through this segment. `p` and `q` are the projections of the ends of the
-    /// face. The result is false for the far side of a thin body or of a body behind it, for a face that has entered
-    /// through another segment, and for one that lies on another segment.
+    /// to this segment, or has penetrated the body through this segment. `p` and `q` are the projections of the ends of
+    /// the face. The result is false for the far side of a thin body or of a body behind it, for a face that has
+    /// entered through another segment, and for a face that lies on another segment.
     fn is_in_front(&self, (face, segment): (usize, usize), [p, q]: [Projection; 2]) -> bool {
         // the gaps at the ends of the part of the face over the segment decide: beyond this part a face of a bent thin
         // body may be in front of the line of a segment on the other side
@@ -455,8 +455,8 @@ impl<'a> Finder<'a> {
         dot(e, f) < -FACING_COSINE
     }
 
-    /// The parts of a face over some segments of a run, for the given edges. The parts end at the bisectors of the
-    /// vertices, and at the normals of the ends of the run.
+    /// The parts of a face over some segments of a run, for the given edges. The parts of the face end at the bisectors
+    /// of the master's vertices and at the normals of the ends of the run.
     ///
     /// ```text
     /// eta = -((x_1 - x_v) x m)/((x_2 - x_1) x m),   m = n_i + n_j    eq. (3.19)
@@ -518,7 +518,7 @@ impl<'a> Finder<'a> {
 }
 
 impl SurfacePoint {
-    /// Positions of the point and of a and b.
+    /// Positions of the point and of the ends a and b of its segment.
     fn places(&self, at: impl Fn(usize) -> [f64; 2]) -> [[f64; 2]; 3] {
         let [x1, x2, a, b] = self.vertices.map(|vertex| vertex.place(&at));
         [between(x1, x2, self.eta), a, b]
@@ -531,8 +531,8 @@ impl SurfacePoint {
         ]
     }
 
-    /// Tilt of the force at a point that was over another segment i at the start; the positions are those of the point,
-    /// a and b at start and end.
+    /// Tilt of the force at a point that was over another segment i at the start; the given positions are those of the
+    /// point and of the ends a and b, at start and end of the increment.
     fn tilt(&self, [start, end]: [[[f64; 2]; 3]; 2], at_start: impl Fn(usize) -> [f64; 2]) -> Tilt {
         if let StartSegment::Same = self.from {
             return Tilt::default();
@@ -574,7 +574,7 @@ impl SurfacePoint {
         project(s, a, b)
     }
 
-    /// (e_n.d_e)/l: the rotation of the segment in the increment.
+    /// Rotation (e_n.d_e)/l of the segment in the increment.
     fn turn(&self, p: &Projection, at: &Configurations) -> f64 {
         let [start, end] = self.configurations(at).map(|[_, a, b]| difference(a, b));
         dot(p.normal, difference(start, end)) / p.length
@@ -596,8 +596,8 @@ impl SurfacePoint {
         (rows, tilt)
     }
 
-    /// Calls `take` for each node of the point with its place in `nodes`, the number (0, 1 or 2) of the vertex s, a or
-    /// b to which it belongs, and its part of this vertex.
+    /// Calls `take` for each node of the point, with the place of the node in `nodes`, the number (0, 1 or 2) of its
+    /// vertex s, a or b, and its part of this vertex.
     #[inline]
     fn each_share(&self, nodes: &[usize], mut take: impl FnMut(usize, usize, f64)) {
         let own = [(0, 1.0 - self.eta), (0, self.eta), (1, 1.0), (2, 1.0)];
@@ -645,7 +645,8 @@ fn slip(start: &Projection, end: &Projection) -> f64 {
 }
 
 impl MeanContact {
-    /// Nodes of a constraint, slave nodes first and the naming node before all, and the number of slave nodes.
+    /// Nodes of a constraint and the number of slave nodes; the first node is the one that names the constraint, and
+    /// slave nodes come before master nodes.
     fn nodes(&self, slave: usize) -> (Recycled<usize>, usize) {
         let mut nodes = Recycled::with_room();
         nodes.push(slave);
@@ -856,7 +857,7 @@ mod tests {
         0.11, -0.05, 0.08, -0.02, 0.15, 0.03, -0.04, 0.06, 0.03, -0.02, 0.05, 0.04,
     ];
 
-    /// The pair that node 1 names.
+    /// The pair of a mean gap that node 1 names.
     fn pair() -> Pair {
         Pair {
             slave: 1,
@@ -869,8 +870,8 @@ mod tests {
         source_of([Bulge::FLAT; 2])
     }
 
-    /// The constraint of node 1 between straight faces and between curved ones; the slave faces
-    /// bulge by a constant rise.
+    /// The constraint of node 1 between straight faces and between curved faces; the curved slave faces bulge by a
+    /// constant rise.
     fn sources() -> [MeanContact; 2] {
         [Bulge::FLAT, Bulge::steep(1.2)].map(|bulge| source_of([bulge; 2]))
     }
@@ -934,8 +935,8 @@ mod tests {
         gaps.sum()
     }
 
-    /// Work of a search over two open chains of nodes, or one that touches itself: pairs of circles compared,
-    /// candidates listed, and points that follow.
+    /// Work of a search over two open chains of nodes, or one that touches itself: numbers of compared pairs of
+    /// circles, of listed candidates, and of the points that result.
     fn work(chains: &[Vec<[f64; 2]>]) -> [usize; 3] {
         let coordinates: Vec<[f64; 2]> = chains.concat();
         let mut first = 0;
@@ -999,8 +1000,8 @@ mod tests {
         }
     }
 
-    /// Number of runs of the master over which the upper end of a slave face has means. The face has length 1; its part
-    /// `over` lies beyond the vertex at which the master turns by the angle `turn`.
+    /// Number of runs of the master over which the upper end of a slave face has mean gaps. The slave face has length
+    /// 1; its part `over` lies beyond the vertex at which the master turns by the angle `turn`.
     fn runs_over_a_vertex(over: f64, turn: f64) -> usize {
         let (sin, cos) = turn.to_radians().sin_cos();
         // bodies on the left: the master's face looks to the right

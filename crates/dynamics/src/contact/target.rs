@@ -1,5 +1,5 @@
-//! Targets of slave nodes: what is selected for a node, and from what a constraint of each kind is made. See
-//! docs/theory/contact.md and docs/theory/geometry.md.
+//! Targets of slave nodes: the part of the master that is selected for a node, from which a constraint of each kind is
+//! made. See docs/theory/contact.md and docs/theory/geometry.md.
 //!
 //! Constraints of each kind are made in a file of their own; the module `kinds` chooses among them.
 
@@ -17,7 +17,7 @@ use super::slave_segments::Vertex;
 pub struct PairTarget {
     /// The slave node, with the data that all kinds share.
     pub pair: Pair,
-    /// What the slave node must not penetrate.
+    /// Part of the master that the slave node must not penetrate.
     pub target: Target,
 }
 
@@ -34,7 +34,7 @@ pub struct Pair {
     pub is_of_master: bool,
 }
 
-/// What a slave node must not penetrate.
+/// Part of the master that a slave node must not penetrate.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Target {
     /// A segment of the master.
@@ -43,7 +43,7 @@ pub enum Target {
     Corner(CornerContact),
     /// Segments of the master under points of slave faces, whose mean gap must not become negative.
     Mean(MeanContact),
-    /// A segment, an arc or a vertex of the master whose slave node is the centre of a disc.
+    /// A segment, an arc or a vertex of the master, for a slave node that is the centre of a disc.
     Disc(DiscContact),
 }
 
@@ -63,7 +63,7 @@ pub struct Segment {
 pub struct SegmentContact {
     /// The segment.
     pub segment: Segment,
-    /// The segment on which the node was closed at the start, if it has slid on from there to this one.
+    /// The segment on which the node was closed at the start, if the node has slid on from there to this segment.
     pub from: Option<Segment>,
 }
 
@@ -81,7 +81,7 @@ pub struct CornerContact {
 /// Points of slave faces whose mean gap must not become negative, and the segments of the master under them.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct MeanContact {
-    /// Ends a and b of the segment under the point with the largest hat function; messages name it.
+    /// Ends a and b of the segment under the point with the largest hat function; messages name this segment.
     pub nearest: [usize; 2],
     /// The points.
     pub points: Recycled<SurfacePoint>,
@@ -111,7 +111,7 @@ entries!(SurfacePoint, (usize, SurfacePoint));
 pub enum StartSegment {
     /// The point was over the same segment as at the end.
     Same,
-    /// The point was over another segment, with these ends and this bulge.
+    /// The point was over another segment, with the given ends and bulge.
     Other([Vertex; 2], Bulge),
     /// The point was over no segment: it has come in over the end of the master surface.
     Outside,
@@ -128,7 +128,7 @@ pub struct DiscContact {
     pub segment: usize,
     /// The segment, arc or vertex under the centre of the disc.
     pub feature: MasterFeature,
-    /// The segment, arc or vertex under the centre at the start, if it was another one.
+    /// The segment, arc or vertex under the centre at the start, if it was another feature.
     pub from: Option<MasterFeature>,
 }
 
@@ -142,8 +142,8 @@ pub struct MasterFeature {
 }
 
 impl Pair {
-    /// The same pair in one configuration: with the overlap allowed at the start of the increment (0) or at its end
-    /// (1).
+    /// The same pair in one configuration, the start of the increment (0) or its end (1), with the overlap that is
+    /// allowed then.
     fn in_one(self, configuration: usize) -> Self {
         Pair {
             allowed: [self.allowed[configuration]; 2],
@@ -170,7 +170,7 @@ impl PairTarget {
         }
     }
 
-    /// The slave node and its segment, which messages name; at a corner the segment before the corner.
+    /// The slave node and its segment, which messages name; at a corner this is the segment before the corner.
     pub(super) fn named(&self) -> NodeAtSegment {
         self.at_ends(self.target.ends())
     }
@@ -235,8 +235,8 @@ impl Target {
         }
     }
 
-    /// Ends of the segment of the target: at a corner the segment before the corner, for a mean the segment that counts
-    /// most, for a disc the nodes of the segment or arc.
+    /// Ends of the segment of the target: at a corner the segment before the corner, for a mean gap the segment that
+    /// counts most, for a disc the nodes of the segment or arc.
     fn ends(&self) -> [usize; 2] {
         match self {
             Target::Segment(contact) => contact.segment.ends,
@@ -246,7 +246,8 @@ impl Target {
         }
     }
 
-    /// Numbers of the segments out of which the slave node is kept; empty for a mean, which keeps out no single node.
+    /// Numbers of the segments out of which the slave node is kept; empty for a mean gap, which keeps out no single
+    /// node.
     pub(super) fn segments(&self) -> impl Iterator<Item = usize> {
         let numbers = match self {
             Target::Segment(contact) => [Some(contact.segment.number), None],
@@ -257,8 +258,8 @@ impl Target {
         numbers.into_iter().flatten()
     }
 
-    /// The target as it was selected for the node; `None` for means and discs, whose targets do not depend on the last
-    /// pass.
+    /// The target as it was selected for the node; `None` for mean gaps and discs, whose targets do not depend on the
+    /// last pass.
     pub(super) fn selected(&self) -> Option<ContactTarget> {
         match self {
             Target::Segment(SegmentContact { segment, from }) => Some(ContactTarget {
@@ -273,7 +274,7 @@ impl Target {
         }
     }
 
-    /// The mean, if the target is a mean.
+    /// The mean gap, if the target has one (surface to surface).
     pub(super) fn mean(&self) -> Option<&MeanContact> {
         match self {
             Target::Mean(mean) => Some(mean),
@@ -298,7 +299,7 @@ impl CornerContact {
         self.before.ends[1]
     }
 
-    /// The corner in the form in which it is selected for a node.
+    /// The corner in the form in which the selection returns it.
     pub(super) fn corner(&self) -> Corner {
         Corner {
             next: self.behind.number,
@@ -348,7 +349,7 @@ impl MeanContact {
 }
 
 impl SurfacePoint {
-    /// Nodes on whose positions the feature depends; some may come twice.
+    /// Nodes on whose positions the feature depends; a node may come twice.
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
         self.vertices.into_iter().flat_map(Vertex::nodes)
     }
@@ -365,14 +366,14 @@ impl MasterFeature {
     }
 }
 
-/// What a slave node must not penetrate: a segment, or the corner at its end.
+/// Part of the master that a slave node must not penetrate: a segment, or the corner at its end.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactTarget {
     /// Index of the segment in its contact.
     pub segment: usize,
     /// The corner at the segment's end b, if the node meets the corner.
     pub corner: Option<Corner>,
-    /// The segment on which the node was closed at the start, if it has slid on from there to this one.
+    /// The segment on which the node was closed at the start, if the node has slid on from there to this segment.
     pub from: Option<usize>,
 }
 
@@ -386,7 +387,7 @@ impl ContactTarget {
         }
     }
 
-    /// Sets the weight to the one that the same corner has in another iterate.
+    /// Sets the weight to the weight that the same corner has in another iterate.
     pub fn take_weight(&mut self, other: &ContactTarget) {
         if let (Some(corner), Some(now)) = (&mut self.corner, other.corner)
             && [self.segment, corner.next] == [other.segment, now.next]
@@ -395,7 +396,7 @@ impl ContactTarget {
         }
     }
 
-    /// Segments of the target: one, or both at a corner.
+    /// Segments of the target: one segment, or at a corner both segments.
     pub fn segments(&self) -> impl Iterator<Item = usize> + use<> {
         [Some(self.segment), self.corner.map(|v| v.next)]
             .into_iter()
@@ -420,5 +421,5 @@ impl Corner {
     }
 }
 
-/// The targets of a node; usually there is one.
+/// The targets of a node; usually there is one target.
 pub type ContactTargets = SmallVec<[ContactTarget; 4]>;

@@ -92,7 +92,7 @@ struct NodePath<'a> {
 }
 
 impl NodePath<'_> {
-    /// Whether the node was in contact before the increment, or is a corner of a face whose mean was closed.
+    /// Whether the node was in contact before the increment, or is a corner of a face whose mean gap was closed.
     fn was_closed(&self) -> bool {
         let before = self.closed[0];
         !before.of_slave(self.key).is_empty() || self.is_corner && before.means_have(self.slave)
@@ -149,8 +149,8 @@ impl NodePath<'_> {
         None
     }
 
-    /// The nearest segment at the end, if the node is behind it without a force although it was
-    /// outside at the start: such a node has come round a corner that has turned concave.
+    /// The nearest segment at the end, if the node is behind it without a force although it was outside at the start.
+    /// A node that is behind a segment without a force has come round a corner that has turned concave.
     fn ends_inside(&self, segments: impl Iterator<Item = usize> + Clone) -> Option<usize> {
         let is_own = |i: &usize| self.contact.is_end(self.slave, *i);
         let others = segments.filter(|i| !is_own(i));
@@ -195,7 +195,7 @@ impl NodePath<'_> {
         interior.joins(segments[i], self.slave, at)
     }
 
-    /// Distance from a segment at the end.
+    /// Distance of the node from a segment at the end.
     fn distance(&self, i: usize) -> f64 {
         let p = self.project(i, 1.0);
         let beyond = (p.xi - p.xi.clamp(0.0, 1.0)) * p.length;
@@ -219,8 +219,7 @@ impl NodePath<'_> {
             || (self.are_near(i, j) && (depth <= CORNER_CLIP_DEPTH * p.length || slides()))
     }
 
-    /// Whether a node that enters through a segment and never leaves is outside the body
-    /// nevertheless.
+    /// Whether a node that enters through a segment, and leaves through no segment, is outside the body nevertheless.
     fn may_stay(&self, i: usize, xi: f64) -> bool {
         let p = self.project(i, 1.0);
         if self.is_round_off(i, -p.gap, p.length)
@@ -268,7 +267,8 @@ impl NodePath<'_> {
     }
 
     /// Whether a node that may overlap segment `i` is still in front of the line of a neighbour at a convex corner,
-    /// when raised by the allowed overlap. Near the corner the node is then outside the body reduced by the overlap.
+    /// when raised by the allowed overlap. A node raised in front of the neighbour is, near the corner, outside the
+    /// body reduced by the overlap.
     fn is_before_corner(&self, i: usize, p: &Projection) -> bool {
         let is_before = |(j, is_next): (Option<usize>, bool)| {
             let Some(q) = j.map(|j| self.project(j, 1.0)) else {
@@ -291,8 +291,7 @@ impl NodePath<'_> {
     }
 
     /// Whether two segments are neighbours on the surface, or the surface between them is at most
-    /// twice as long as the displacement of the node. The bound excludes the far side of a thin
-    /// body.
+    /// twice as long as the displacement of the node. The bound on the length excludes the far side of a thin body.
     fn are_near(&self, i: usize, j: usize) -> bool {
         let leads = |i: usize, j: usize| self.leads(i, Along::Forward, Some(j));
         i == j || leads(i, j) || leads(j, i)
@@ -322,15 +321,16 @@ fn turns_left(first: &Projection, second: &Projection) -> bool {
     cross(first.tangent, second.tangent) > 0.0
 }
 
-/// Largest depth by which a face of a slave surface and a segment cross at the displacements `u`; 0 if none cross:
+/// Largest depth by which a face of a slave surface and a segment cross at the displacements `u`; 0 if no face crosses
+/// a segment:
 ///
 /// ```text
 /// min(|h_p|, |h_q|)/|b - a|, min(|h_a|, |h_b|)/|q - p|   the smaller    eq. (10.6)
 /// ```
 ///
-/// h are the distances of the ends p and q of the face from the line of the segment from a to b, and of a and b from
-/// the line of the face. Edges with a common node do not count, nor do edges of contact from surface to surface, whose
-/// gaps are means.
+/// The symbols h are the distances of the ends p and q of the face from the line of the segment from a to b, and of a
+/// and b from the line of the face. Edges with a common node do not count, nor do edges of contact from surface to
+/// surface, whose gaps are means.
 pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
     let at = |node: usize| position(search.coordinates(), u, node);
     let (mut most, mut found) = (0.0, Vec::new());
@@ -371,14 +371,14 @@ pub fn crossed_edges(search: &Search, u: &[f64]) -> f64 {
 }
 
 /// Largest depth of a slave node inside a master, over the listed slave nodes of contact from surface to surface, whose
-/// gaps are means, at the displacements `u`; 0 if none is inside:
+/// gaps are means, at the displacements `u`; 0 if no node is inside:
 ///
 /// ```text
 /// |x_s - x_m|/L    eq. (10.7)
 /// ```
 ///
-/// x_m is the nearest point of the master, and L the length of the segment there; behind a rigid segment L is the
-/// longer edge at the node. The depth of a vertex between means is given by eq. (10.8).
+/// Here x_m is the nearest point of the master, and L the length of the segment there; behind a rigid segment L is the
+/// length of the longer edge at the node. The depth of a vertex between two mean gaps is given by eq. (10.8).
 pub fn sunk_nodes(search: &Search, u: &[f64]) -> f64 {
     let at = |node: usize| position(search.coordinates(), u, node);
     let is_of_mean = |listed: &ListedSlave| !listed.is_fitted() && !listed.meets_segments();
@@ -425,8 +425,7 @@ fn depth_of(listed: &ListedSlave, at: impl Fn(usize) -> [f64; 2] + Copy) -> f64 
     }
 }
 
-/// Depth by which one edge and one segment, each with its bulge, cross, eq. (10.6); `None` if they
-/// do not.
+/// Depth by which one edge and one segment, each with its bulge, cross, eq. (10.6); `None` if they do not cross.
 fn crossed_by(edge: ([[f64; 2]; 2], Bulge), segment: ([[f64; 2]; 2], Bulge)) -> Option<f64> {
     let depth = |ends: [[f64; 2]; 2], ([a, b], bulge): ([[f64; 2]; 2], Bulge)| {
         let [p, q] = ends.map(|end| {

@@ -45,8 +45,7 @@ fn passes(from: [f64; 2], to: [f64; 2], contact: Contact) -> Option<[usize; 2]> 
     passes_of(true, from, to, contact)
 }
 
-/// Contact of the slave node: whether it was closed before, and on which segment it is closed at
-/// the end.
+/// Contact of the slave node: whether the node was closed before, and on which segment it is closed at the end.
 #[derive(Clone, Copy)]
 struct Contact {
     before: bool,
@@ -65,12 +64,12 @@ const FREE: Contact = Contact {
     before: false,
     now: None,
 };
-/// The node was in contact before and is not at the end.
+/// The node was in contact before the increment, but is not at the end.
 const LEAVES: Contact = Contact {
     before: true,
     now: None,
 };
-/// Numbers of the segments from (5, 0.5) to (4, 0.5) on top and from (4, 0) to (5, 0) below.
+/// Numbers of two segments: on top from (5, 0.5) to (4, 0.5), below from (4, 0) to (5, 0).
 const TOP: [usize; 2] = [13, 14];
 const BOTTOM: [usize; 2] = [5, 6];
 

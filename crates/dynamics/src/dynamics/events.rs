@@ -1,5 +1,6 @@
-//! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact,
-//! whose time solves T(tau) = tau. See docs/theory/impacts.md, Impacts as events.
+//! Event-driven integration of impacts: subincrements [t, t + tau] that end at the next impact. Their length tau solves
+//! T(tau) = tau, where T is the time of the impact in a trial of length tau. See docs/theory/impacts.md, Impacts as
+//! events.
 
 use super::impact_search::{EventTrial, ImpactSearch};
 use super::increment::{Attempt, Failed, Path, Solved, StaticRates};
@@ -36,7 +37,7 @@ pub(crate) struct Subincrements<'a, 'm> {
     pub problem: &'a StepProblem<'m>,
     pub workspace: &'a mut Workspace<'m>,
     pub start: &'a State,
-    /// The part of the nominal increment that is left.
+    /// The part of a nominal increment that is still to be solved.
     pub rest: Interval,
     /// Length of the nominal increment.
     pub nominal: f64,
@@ -46,14 +47,15 @@ pub(crate) struct Subincrements<'a, 'm> {
 #[derive(Debug, Clone, Copy)]
 struct Intrusion {
     pair: NodeAtSegment,
-    /// Lift of the node over the chord of the segment; `None` for a mean.
+    /// Lift of the node over the chord of the segment; `None` for a mean gap.
     lift: Option<Lift>,
     /// Time of the event since the start of the subincrement, by the motion between its ends.
     time: f64,
 }
 
 impl Intrusion {
-    /// Gap of the pair at the end of a trial and the length to which it is relative; NaN for a mean over no segment.
+    /// Gap of the pair at the end of a trial and the length to which it is relative; NaN for a mean gap over no
+    /// segment.
     fn gap(&self, problem: &StepProblem, trial: &EventTrial) -> [f64; 2] {
         match self.lift {
             Some(lift) => {
@@ -68,7 +70,7 @@ impl Intrusion {
 /// Second-order motion of all nodes from the start of a subincrement.
 struct FreeMotion<'a> {
     path: &'a Path,
-    /// End of the subincrement if the motion is that of a converged subincrement; else 0.
+    /// End of the converged subincrement to which the motion belongs; 0 for another motion.
     end: f64,
     /// Time for which the motion is followed.
     duration: f64,
@@ -81,8 +83,9 @@ impl FreeMotion<'_> {
         u0.iter().zip(&travel).map(|(u, d)| u + d).collect()
     }
 
-    /// Whether the nodes move far enough relative to each other to meet. A node that meets a segment at xi was at most
-    /// (1 - xi) times its path relative to the end a, plus xi times its path relative to b, away from there.
+    /// Whether node and segment move far enough relative to each other to meet. The distance of a node from the place
+    /// xi where it will meet a segment is at most (1 - xi) times its path relative to the end a, plus xi times its path
+    /// relative to the end b.
     fn may_meet(&self, start: &Projection, [s, a, b]: [usize; 3]) -> bool {
         let Path {
             v, a: acceleration, ..
@@ -139,8 +142,8 @@ impl FreeMotion<'_> {
         self.first_to_stay(&crossings(&motions, self.duration))
     }
 
-    /// Time at which a constraint outside the active ones, which ends with an overlap, has closed: its slave node has
-    /// moved behind the line of the segment.
+    /// Time at which an inactive constraint that ends with an overlap has closed: its slave node has moved behind the
+    /// line of the segment.
     fn overlap(&self, problem: &StepProblem, u0: &[f64], constraint: &Constraint) -> Option<f64> {
         let Some(lift) = constraint.lift_at_start() else {
             return constraint.closing_time([&self.path.v, &self.path.a], self.duration);
@@ -149,8 +152,8 @@ impl FreeMotion<'_> {
         self.first_to_stay(&line_crossings(&motions, self.end))
     }
 
-    /// Time of the first entry of a node that stays inside. A node that leaves the body before the end of the
-    /// subincrement does not count, since the motion between the ends is an estimate.
+    /// Time of the first entry of a node that stays inside. A node that leaves the body again before the end of the
+    /// subincrement does not count, since the motion within the subincrement is an estimate.
     fn first_to_stay(&self, found: &[Crossing]) -> Option<f64> {
         let stays = |&(k, crossing): &(usize, &Crossing)| {
             let is_out = |c: &Crossing| c.direction == CrossingSense::Leaving && c.time < self.end;
@@ -165,14 +168,14 @@ impl<'m> Subincrements<'_, 'm> {
     /// The subincrement up to the earliest impact of a pair that does not touch at the start.
     ///
     /// The whole rest of the increment is tried first. Inactive pairs that overlap at the end of the trial of length
-    /// tau show an impact; the subincrement ends at the first of them,
+    /// tau show an impact; the subincrement ends at the first impact,
     ///
     /// ```text
     /// g(tau) = 0    eq. (6.4)
     /// ```
     ///
-    /// g is the gap at the end of a subincrement of length tau. If the whole rest does not converge, the second-order
-    /// motion of the start (paper eq. 50) predicts tau.
+    /// Here g is the gap at the end of a subincrement of length tau. If the whole rest of the increment does not
+    /// converge, the second-order motion of the start (paper eq. 50) predicts the length tau.
     pub fn next(&mut self) -> Result<Subincrement, FailedSubincrement> {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let search = &mut self.workspace.search;
@@ -267,13 +270,13 @@ impl<'m> Subincrements<'_, 'm> {
         }
     }
 
-    /// Solves the whole rest of the increment; nodes land within it.
+    /// Solves the whole rest of the increment; nodes land within this subincrement.
     pub fn rest(&mut self) -> Result<Subincrement, FailedSubincrement> {
         let solved = self.attempt(self.rest.dt, ConstraintSet::All, None)?;
         Ok(self.converged(self.rest.dt, solved))
     }
 
-    /// Length of the subincrement that the motion of the start predicts.
+    /// Length of the subincrement that is predicted by the motion of the start.
     fn predicted(&mut self, active: &mut ActiveConstraints) -> f64 {
         let (rest, group) = (self.rest.dt, IMPACT_GROUPING_TIME * self.nominal);
         let path = Path {
@@ -307,9 +310,9 @@ impl<'m> Subincrements<'_, 'm> {
         active.join_at_start(entry.pair, p.normal);
     }
 
-    /// Events of the nodes that enter bodies, and are not kept out of them, within the time tau of a motion. The motion
-    /// is that of a converged subincrement, or a prediction. The nodes that enter in a converged subincrement stay
-    /// inside to its end, or go through the body.
+    /// Events of the nodes that enter bodies, and are not kept out of these, within the time tau of a motion. The
+    /// motion is that of a converged subincrement, or a prediction. In a converged subincrement these are nodes that
+    /// stay inside to its end, or go through the body.
     fn entries(
         &mut self,
         active: &ActiveConstraints,

@@ -1,4 +1,4 @@
-//! Nodes without mass that carry no contact force, and the stiffness of the elements at them. See
+//! Nodes without mass that carry no contact force, and the stiffness of the elements at these nodes. See
 //! docs/theory/impacts.md, Releases.
 
 use std::collections::BTreeSet;
@@ -63,7 +63,7 @@ impl FreeNodes {
         )
     }
 
-    /// Whether the gap of a constraint depends on free nodes.
+    /// Whether the gap of a constraint depends on free nodes (without mass and contact force).
     pub fn open(&self, constraint: &Constraint) -> bool {
         let rows = &constraint.derivative_rows().normal;
         let mut entries = constraint.dofs.iter().zip(rows);

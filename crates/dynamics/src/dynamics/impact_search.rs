@@ -1,5 +1,5 @@
-//! Time of an impact: the length tau of a subincrement at whose end the gap of an inactive pair is zero, eq. (6.4); it
-//! is bracketed and interpolated. See docs/theory/impacts.md, Impacts as events, item 3.
+//! Time of an impact: the length tau of a subincrement at whose end the gap of an inactive pair is zero, eq. (6.4); the
+//! length is bracketed and interpolated. See docs/theory/impacts.md, Impacts as events, item 3.
 
 use crate::contact::{Constraint, ConstraintKey};
 
@@ -29,7 +29,8 @@ impl EventTrial {
         }
     }
 
-    /// The mean gap of a constraint and the length to which it is relative; NaN if the trial has no such mean.
+    /// The mean gap of a constraint and the length to which this gap is relative; NaN if the trial does not have this
+    /// mean gap.
     pub fn mean(&self, key: ConstraintKey) -> [f64; 2] {
         let place = self.means.binary_search_by_key(&key, |(key, _)| *key);
         place.map_or([f64::NAN; 2], |place| self.means[place].1)
@@ -49,7 +50,7 @@ pub(crate) struct ImpactSearch {
 }
 
 impl ImpactSearch {
-    /// A search that begins with the start, as a trial of length zero.
+    /// A search whose first trial is the start of the subincrement, with length zero.
     pub fn new(start: EventTrial) -> Self {
         ImpactSearch {
             before: start,
@@ -59,7 +60,7 @@ impl ImpactSearch {
         }
     }
 
-    /// Records a trial that ends before, or after, an impact.
+    /// Records a trial, which ends before or after an impact.
     pub fn record(&mut self, trial: EventTrial, is_before: bool) {
         self.old = match is_before {
             true => Some(std::mem::replace(&mut self.before, trial)),
@@ -68,7 +69,7 @@ impl ImpactSearch {
     }
 
     /// Length at which the gap of a pair is zero: by inverse quadratic interpolation of three trials, else by linear
-    /// interpolation of two. Returns `None` if the gap has no change of sign.
+    /// interpolation of two. `None` if the gap has no change of sign.
     pub fn root(&self, gap: impl Fn(&EventTrial) -> f64) -> Option<f64> {
         let (low, high) = (&self.before, self.after.as_ref()?);
         let (g, h) = (gap(low), gap(high));
@@ -88,9 +89,9 @@ impl ImpactSearch {
         Some(quadratic.filter(is_inside).unwrap_or(linear))
     }
 
-    /// The length to try after the last one, `tau`: the expected length `root` of the impact. If `root` is not between
-    /// the trials before and after the impact, or the steps hardly decrease, the result is halfway between these
-    /// trials.
+    /// The length to try after the last length `tau`: the expected length `root` of the impact. If `root` is not
+    /// between the trials before and after the impact, or the steps hardly decrease, the result is halfway between
+    /// these trials.
     pub fn next(&mut self, tau: f64, root: Option<f64>) -> f64 {
         let (low, high) = (
             self.before.length,
@@ -109,7 +110,7 @@ impl ImpactSearch {
 mod tests {
     use super::*;
 
-    /// Number of trials, from the length 1 on, until the root of a gap is found to 1e-10.
+    /// Number of trials until the root of a gap is found to 1e-10; the first trial has the length 1.
     fn trials(gap: impl Fn(f64) -> f64, root: f64) -> Option<usize> {
         let trial = |tau: f64| EventTrial::new(tau, &[gap(tau)], &[]);
         let (mut search, mut tau) = (ImpactSearch::new(trial(0.0)), 1.0);

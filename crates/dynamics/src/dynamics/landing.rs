@@ -14,7 +14,7 @@ use crate::contact::tolerances::CLOSED_GAP;
 use crate::contact::{ClosedPair, Constraint, ConstraintKey, Rows};
 
 /// Gives back the energy that the landings of a converged increment of length `dt` from `start` have removed, if the
-/// step asks for it (`LANDING=RETURN`).
+/// step asks for this return (`LANDING=RETURN`).
 ///
 /// # Errors
 /// Returns an error if a solve with K* fails.
@@ -54,7 +54,7 @@ pub(super) fn touches(problem: &StepProblem, turns: &[bool], constraint: &Constr
     constraint.nodes().any(|node| turns[body_of[node]])
 }
 
-/// Part of the energy of a load below which its rest is round-off.
+/// Part of the energy of a load below which the energy not yet given back is round-off.
 const REST_ROUND_OFF: f64 = 1e-12;
 
 /// A pair that lands.
@@ -62,16 +62,16 @@ struct LandedPair {
     key: ConstraintKey,
     /// Pt/Pn.
     ratio: f64,
-    /// Length s of the normal row in the increment, eq. (3.31); with it no impulse is left if all of a force is taken
-    /// back.
+    /// Length s of the normal row in the increment, eq. (3.31); the factor s makes the impulse zero if all of a force
+    /// is taken back.
     stretch: f64,
     /// Rows Gn and Gt at the end, summed over the nodes of the contact's slave surface.
     rows: [[f64; 2]; 2],
 }
 
 impl LandedPair {
-    /// Return of the pair for the share y of its load: the impulse (dt²/2) y along the normal, and an impulse along its
-    /// friction if y takes a part of its force back.
+    /// Return of the pair for the share y of its load: the impulse (dt²/2) y along the normal, and an impulse along the
+    /// friction if y takes a part of the contact force back.
     fn share(&self, load: &ReturnLoad, dt: f64, y: f64, energy: f64) -> Option<PairReturn> {
         let normal = dt * dt / 2.0 * y;
         let (tangential, friction) = match &load.friction {
@@ -92,8 +92,8 @@ impl LandedPair {
 
 /// A pair that lands, with its load; `None` for a pair that was closed at the start.
 ///
-/// D = -Pn (Bn d), eq. (6.5), is the energy that the force of the pair has removed. The load is Gn^T at the end, whose
-/// moments about the end positions cancel, and (Pt/Pn) Gt^T for friction.
+/// The value D = -Pn (Bn d), eq. (6.5), is the energy that the force of the pair has removed. The load is Gn^T at the
+/// end, whose forces have no moment in the end positions, and (Pt/Pn) Gt^T for friction.
 fn landing(
     problem: &StepProblem,
     solved: &Solved,
@@ -186,7 +186,7 @@ pub(super) struct GivenBack {
 
 /// Gives back the energy of every load as kinetic energy along its pattern, in the frame of the supports.
 ///
-/// V1 <- V1 + sum y_j w_j, eq. (6.8)
+/// The velocities V1 become V1 + sum y_j w_j, eq. (6.8), with the shares y_j and patterns w_j.
 ///
 /// # Errors
 /// Returns an error if a solve with K* fails.
@@ -255,15 +255,15 @@ pub(super) fn give_back(
     })
 }
 
-/// Gives the rests of the energies of loads, those not yet in `given`, to the vibration of their free bodies, and adds
-/// them to `given`:
+/// Gives the rests of the energies of loads, which are not yet in `given`, to the vibration of their free bodies, and
+/// adds them to `given`:
 ///
 /// ```text
 /// V1 <- V1 + z V',  sum M V' = 0,  sum r x M V' = 0
 /// (z + z²/2) V'.M V' = sum (D_j - G_j),   eq. (6.12)
 /// ```
 ///
-/// If the sum of the rests is larger than the energy of the vibration, the rests are lost.
+/// If the sum of these rests is larger than the energy of the vibration, the rests are lost.
 fn give_rests(
     problem: &StepProblem,
     bodies: &RigidBodies,

@@ -7,24 +7,24 @@ use crate::vectors::{cross, difference, dot};
 
 /// A load along whose response energy is given back.
 pub(crate) struct ReturnLoad {
-    /// Nodal forces over all dofs, at the end positions; for a pair they are Gn^T.
+    /// Nodal forces over all dofs, at the end positions; for a pair these forces are Gn^T.
     pub force: Vec<f64>,
     /// Friction that is taken back together with the load.
     pub friction: Option<FrictionLoad>,
     /// Energy that is to be given back along the response.
     pub energy: f64,
-    /// Largest absolute value of the share: at this value the impulse is that of the force of the
+    /// Largest absolute value of the share, at which the impulse of the return equals the impulse of the force in the
     /// increment.
     pub most: f64,
-    /// Whether the share may be negative, so a force of the increment is taken back.
+    /// Whether the share may be negative, which means that a force of the increment is taken back.
     pub pulls: bool,
 }
 
 /// The friction of the pair of a load.
 pub(crate) struct FrictionLoad {
-    /// Nodal forces over all dofs; for a pair they are (Pt/Pn) Gt^T.
+    /// Nodal forces over all dofs; for a pair these forces are (Pt/Pn) Gt^T.
     pub force: Vec<f64>,
-    /// Work c that friction has dissipated, for a share y of -1 (energy).
+    /// Work c of friction that the share y = -1 takes back (energy).
     pub work: f64,
 }
 
@@ -38,7 +38,7 @@ pub(super) struct VelocityPattern {
 }
 
 impl VelocityPattern {
-    /// Adds another pattern to this one.
+    /// Adds another pattern to the pattern.
     pub fn add(&mut self, other: &VelocityPattern) {
         let add = |sum: &mut [f64], v: &[f64]| sum.iter_mut().zip(v).for_each(|(s, v)| *s += v);
         add(&mut self.w, &other.w);
@@ -49,7 +49,7 @@ impl VelocityPattern {
 /// The velocity pattern of a load at the end of an increment of length `dt`, with the bodies in the configuration
 /// `bodies`.
 ///
-/// w = K*^-1 Gn^T, eq. (6.6), is up to a factor the change of the end velocity by the load.
+/// The pattern w = K*^-1 Gn^T, eq. (6.6), is, up to a factor, the change of the end velocity by the load.
 ///
 /// # Errors
 /// Returns an error if a solve with K* fails.
@@ -67,8 +67,8 @@ pub(super) fn pattern(
     Ok(VelocityPattern { w, momentum })
 }
 
-/// For every body whether it contains a rigid body that turns in this step; a rigid body whose rotation is held moves
-/// as other bodies do.
+/// For every body whether it contains a rigid body that turns in the step; a rigid body whose rotation is held moves as
+/// other bodies do.
 pub(super) fn turning_bodies(problem: &StepProblem) -> Vec<bool> {
     let mut turns = vec![false; problem.parts.bodies()];
     let turning = problem.unknowns.turning.bodies.iter();
@@ -117,9 +117,9 @@ impl RigidBodies {
         bodies
     }
 
-    /// Velocity V_s of the supports over all dofs, if the dofs have the velocities `v`. V_s is one vector for each
-    /// body. The component of V_s in a direction is the mean velocity of the supports in this direction; without
-    /// supports it is the mean velocity of the mass.
+    /// Velocity V_s of the supports over all dofs, if the dofs have the velocities `v`. The velocity V_s is one vector
+    /// for each body. The component of V_s in a direction is the mean velocity of the supports in this direction;
+    /// without supports it is the mean velocity of the mass.
     pub fn support_velocity(&self, problem: &StepProblem, v: &[f64]) -> Vec<f64> {
         let body_of = problem.parts.of_nodes();
         // sums of the velocities and their number, and of the momenta and masses
@@ -150,7 +150,7 @@ impl RigidBodies {
         (0..v.len()).map(of_dof).collect()
     }
 
-    /// Sets a pattern to zero on bodies that contain a rigid body that turns: they are given no energy.
+    /// Sets a pattern to zero on bodies that contain a rigid body that turns: such bodies are given no energy.
     fn keep_turning(&self, problem: &StepProblem, w: &mut [f64]) {
         let body_of = problem.parts.of_nodes();
         let all = w.iter_mut().enumerate();
@@ -175,7 +175,7 @@ impl RigidBodies {
         vibration.into_iter().enumerate().map(of_dof).collect()
     }
 
-    /// Sums over the dofs of every body of forces or momenta, and of their moments.
+    /// For every body, the sum of forces or momenta over its dofs, and the sum of their moments.
     fn sums(&self, problem: &StepProblem, v: &[f64]) -> Vec<[f64; 3]> {
         let mut sums = vec![[0.0; 3]; self.is_free.len()];
         for (node, &body) in problem.parts.of_nodes().iter().enumerate() {
@@ -185,16 +185,16 @@ impl RigidBodies {
         sums
     }
 
-    /// Adds a rigid motion to every free body so that it has exactly the momenta of its load,
+    /// Adds a rigid motion to every free body so that the body has exactly the momenta of its load,
     ///
     /// ```text
     /// w <- w + dv + domega e_z x r
     /// sum p = (dt²/2) sum f,  sum r x p = (dt²/2) sum r x f,   eq. (6.7)
     /// ```
     ///
-    /// p = M w, f is the load, and r is the vector from the centre of mass. The response of K* alone does not have
-    /// exactly the momenta of the load: K* belongs to another configuration, contains contact stiffness, and its
-    /// factors may have been turned with the bodies.
+    /// Here p = M w is the momentum of the pattern, f is the load, and r is the vector from the centre of mass. The
+    /// response of K* alone does not have exactly the momenta of the load, because K* belongs to another configuration,
+    /// contains contact stiffness, and may have factors that were turned with the bodies.
     fn correct(&self, problem: &StepProblem, dt: f64, force: &[f64], w: &mut [f64]) {
         let loads = self.sums(problem, force);
         let own = self.sums(problem, &problem.mass.times(w));

@@ -15,13 +15,13 @@ const MOST_STEPS: usize = 10;
 const LAST_STEP: f64 = 1e-6;
 /// Overlap, in lengths of the segment, that is round-off of positions.
 const OVERLAP_ROUND_OFF: f64 = 1e-12;
-/// Round-off of displacements, and of the sums of a strain energy.
+/// Relative round-off of displacements, and of the sums of a strain energy.
 const SUM_ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
 /// Brings nodes without mass that carry no force to rest at the end of an increment in which pairs have opened. The
-/// mid-point rule fixes only the mean of start and end, so without the rest the deviation of these nodes would change
-/// its sign in every increment. If there is no rest, or a node would pass through a surface on the way, the nodes stay
-/// as they are. Returns the energy that is lost as the nodes come to rest.
+/// mid-point rule fixes only the mean of start and end, so without the rest the deviation of nodes without mass would
+/// change its sign in every increment. If no state of rest is found, or a node would pass through a surface on the way,
+/// the nodes stay as they are. Returns the energy that is lost as the nodes come to rest.
 pub(crate) fn bring_to_rest(
     problem: &StepProblem,
     workspace: &mut Workspace,
@@ -76,8 +76,8 @@ struct Releasing<'a, 'm> {
 }
 
 impl Releasing<'_, '_> {
-    /// Displacements with the free nodes at rest: they minimise W - R.u with all gaps >= min(g1, 0). Newton steps
-    /// include the contact forces of the pairs that the nodes meet. Returns `None` if the steps do not converge.
+    /// Displacements with the free nodes at rest, which minimise W - R.u with all gaps >= min(g1, 0). Newton steps
+    /// include the contact forces of the pairs that the nodes meet. `None` if the steps do not converge.
     fn rest(&mut self) -> Option<Vec<f64>> {
         let mut u = self.end.u.clone();
         for _ in 0..MOST_STEPS {
@@ -118,8 +118,9 @@ impl Releasing<'_, '_> {
         Some(du)
     }
 
-    /// Constraints at the displacements `u` that the free nodes can close, without friction: new constraints and those
-    /// of the last pass. The gaps of constraints that free nodes can close are measured from the least allowed value.
+    /// Constraints at the displacements `u` that the free nodes can close, without friction: new constraints and the
+    /// constraints of the last pass. The gaps of constraints that free nodes can close are measured from their least
+    /// allowed value.
     fn constraints(&mut self, u: &[f64]) -> Vec<Constraint> {
         let start = &self.end.u;
         let (increment, mut found) = ([start.as_slice(), u], Vec::new());
@@ -153,8 +154,8 @@ impl Releasing<'_, '_> {
         found.is_some()
     }
 
-    /// Energy that is lost if the nodes are at rest at the displacements `u`, eq. (6.15), and the internal variables
-    /// there; `None` if energy would be added.
+    /// Energy that is lost if the nodes are at rest at the displacements `u`, eq. (6.15), and the internal variables at
+    /// rest; `None` if the rest would add energy.
     fn release(&self, u: &[f64]) -> Option<(Release, Vec<f64>)> {
         let (elements, end) = (self.problem.elements, self.interval.end);
         let before = elements.evaluate(self.end.motion());

@@ -8,7 +8,7 @@ use super::results::{Cause, State};
 use super::step::{StepProblem, Workspace};
 use crate::contact::Constraint;
 
-/// Enters the release at the end of an increment of length `dt` from `start`. If the step asks for returns
+/// Enters the release of pairs at the end of an increment of length `dt` from `start`. If the step asks for returns
 /// (`LANDING=RETURN`), the lost energy is given back along the pattern of the earlier forces of the opened pairs, in
 /// proportion to their normal forces.
 ///

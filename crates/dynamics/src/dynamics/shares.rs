@@ -1,4 +1,4 @@
-//! Shares of the patterns that are added to the velocities, so that each gives its own energy. See
+//! Shares of the patterns that are added to the velocities, so that each pattern gives its own energy. See
 //! docs/theory/impacts.md, Landing return.
 
 use nalgebra::DMatrix;
@@ -8,12 +8,12 @@ use nalgebra::DMatrix;
 const LAST_CHANGE: f64 = 1e-13;
 /// Most sweeps.
 const MOST_SWEEPS: usize = 1000;
-/// Momentum along a pattern that is round-off of a zero velocity, relative to the momentum of the
-/// energy to be given.
+/// Momentum along a pattern up to which this momentum is round-off of a zero velocity, relative to the momentum that
+/// belongs to the energy to be given.
 const REST_MOMENTUM: f64 = 1e-8;
 
-/// Signs of the shares: those of b, so each share strengthens the motion along its pattern and never reverses it.
-/// Without any motion the sign of a share is that of the force.
+/// Signs of the shares: the signs of the momenta b along the patterns, so each share strengthens the motion along its
+/// pattern and never reverses it. Without any motion along a pattern its share has the sign of the force.
 pub(super) fn signs(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
     let sign = |j: usize| {
         let is_at_rest = b[j].abs() <= REST_MOMENTUM * (2.0 * a[(j, j)] * energies[j]).sqrt();
@@ -28,10 +28,10 @@ pub(super) fn signs(a: &DMatrix<f64>, b: &[f64], energies: &[f64]) -> Vec<f64> {
 /// y_j (b_j + sum_k A_jk y_k / 2) = D_j  or  |y_j| = Y_j,   eq. (6.9)
 /// ```
 ///
-/// Here A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1 - s_j + c_j; `energies` are D_j > 0 and `most` are Y_j. For
-/// any signs of y there is exactly one solution if no limit Y_j is reached: the minimum of a convex function, which is
-/// found coordinate by coordinate. A pattern has no share if it has no energy, or if its share at the limit Y_j would
-/// remove energy.
+/// Here A_jk = w_j.M w_k (energy for y = 1), b_j = w_j.M V1 - s_j + c_j; `energies` are the energies D_j > 0 and `most`
+/// the limits Y_j. For any signs of the shares y there is exactly one solution if no limit Y_j is reached: the minimum
+/// of a convex function, which is found coordinate by coordinate. A pattern has no share if it has no energy, or if its
+/// share at the limit Y_j would remove energy.
 pub(super) fn shares(
     a: &DMatrix<f64>,
     b: &[f64],
@@ -59,7 +59,8 @@ pub(super) fn shares(
     y
 }
 
-/// Energy given by every share, y_j (b_j + sum_k A_jk y_k/2); the sum is the change of energy by all shares, eq. (6.9).
+/// Energy given by every share y_j, y_j (b_j + sum_k A_jk y_k/2); the sum of these energies is the change of energy by
+/// all shares, eq. (6.9).
 pub(super) fn given(a: &DMatrix<f64>, b: &[f64], y: &[f64]) -> Vec<f64> {
     let half = |j: usize| (0..y.len()).map(|k| a[(j, k)] * y[k]).sum::<f64>() / 2.0;
     (0..y.len()).map(|j| y[j] * (b[j] + half(j))).collect()
@@ -83,8 +84,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The patterns are random over 4 velocities: up to 4 independent ones, and also equal
-        /// ones.
+        /// The patterns are random over 4 velocities: up to 4 independent patterns, and also equal patterns.
         #[test]
         fn every_share_gives_its_own_energy_and_strengthens_the_motion(
             w in proptest::collection::vec(proptest::collection::vec(-1.0..1.0_f64, 4), 1..7),

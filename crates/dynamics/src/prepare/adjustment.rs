@@ -73,9 +73,10 @@ pub(super) fn adjust(model: &mut Model, surfaces: &[ContactSurfaces]) -> Vec<Adj
     adjusted
 }
 
-/// Chooses the nodes that move in a sweep: of a node and the segment that it faces only one moves. The deepest nodes
-/// come first; of nodes equally deep but for round-off, those that face the longest segments come first, since nodes of
-/// a fine mesh follow the shape of a coarse one. Nodes equal in both respects come in the order of the model.
+/// Chooses the nodes that move in a sweep: of a node and the segment that it faces, either the node or the segment
+/// moves. The deepest nodes come first. Of nodes with the same depth (up to round-off), the nodes that face the longest
+/// segments come first, since nodes of a fine mesh follow the shape of a coarse mesh. Nodes of equal depth that face
+/// equally long segments come in the order of the model.
 fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
     let depths = ranks(&gaps, |gap| gap.gap);
     let lengths = ranks(&gaps, |gap| -gap.length);
@@ -93,8 +94,8 @@ fn independent(mut gaps: Vec<InitialGap>) -> Vec<InitialGap> {
     gaps
 }
 
-/// Rank of each slave node by a length, the least first; lengths that differ by no more than the round-off of
-/// coordinates have the same rank.
+/// Rank of each slave node by a length, with the least length first; lengths that differ by no more than the round-off
+/// of coordinates have the same rank.
 fn ranks(gaps: &[InitialGap], length: impl Fn(&InitialGap) -> f64) -> HashMap<usize, usize> {
     let mut ordered: Vec<&InitialGap> = gaps.iter().collect();
     ordered.sort_by(|a, b| length(a).total_cmp(&length(b)));
@@ -121,8 +122,7 @@ fn is_meant(model: &Model, wanted: Adjust, gap: &InitialGap) -> bool {
     }
 }
 
-/// Moves nodes to the feet of their projections on the master surface, or to a clearance above
-/// them.
+/// Moves nodes to the feet of their projections on the master surface, or to a clearance above these feet.
 fn move_nodes(model: &mut Model, moved: &[InitialGap], clearance: f64) {
     let before = model.mesh.coordinates.clone();
     for gap in moved {
@@ -207,7 +207,7 @@ mod tests {
     use crate::contact::contact_surfaces;
     use crate::model::{ElementType, Face, Interaction, Surface, SurfaceKind};
 
-    /// Whether moving the upper corners of a slightly sheared square spoils it; `unit` scales all lengths.
+    /// Whether moving the upper corners of a slightly sheared square spoils the element; `unit` scales all lengths.
     fn is_spoiled_by(upper: [[f64; 2]; 2], unit: f64) -> bool {
         let square = [[0.0, 0.0], [1.0, 0.03], [1.02, 1.01], [0.01, 0.98]];
         let moved = [square[0], square[1], upper[0], upper[1]];

@@ -24,7 +24,8 @@ pub struct InitialGap {
     pub rise: f64,
     /// Length of the segment.
     pub length: f64,
-    /// The smallest of the lengths of the segment and of the faces of the slave node; depths are relative to it.
+    /// The smallest of the lengths of the segment and of the faces of the slave node; depths are relative to this
+    /// length.
     pub edge: f64,
 }
 
@@ -40,8 +41,8 @@ impl InitialGap {
     }
 }
 
-/// Gaps of the slave nodes of a contact at the positions `x`, without nodes that face no segment. If a contact presses
-/// its overlap out, its nodes may lie deeper behind a segment that their own surface faces.
+/// Gaps of the slave nodes of a contact at the positions `x`, without nodes that face no segment. If a contact removes
+/// its overlap at the start, nodes may lie deeper behind a segment that their own surface faces.
 pub(super) fn gaps(
     contact: &ContactSurfaces,
     x: &[[f64; 2]],
@@ -76,14 +77,13 @@ struct Start<'m> {
     fans: Vec<Option<NormalFan>>,
     /// Length of the shortest face at every slave node that has one.
     shortest: HashMap<usize, f64>,
-    /// Nodes before and after every slave node on its own surface, if the contact presses its overlap out.
+    /// Nodes before and after every slave node on its own surface, if the contact removes its overlap at the start.
     adjacent: Option<HashMap<usize, [usize; 2]>>,
-    /// Depth behind a segment up to which a node may face it (segment lengths).
+    /// Depth behind a segment up to which a node may face the segment (segment lengths).
     deepest: f64,
 }
 
-/// Depth behind a segment up to which a node may lie whose overlap is pressed out (segment
-/// lengths).
+/// Depth behind a segment up to which a node may lie if the contact removes its overlap (segment lengths).
 const DEEPEST_FIT: f64 = 8.0;
 
 impl<'m> Start<'m> {
@@ -124,8 +124,7 @@ impl<'m> Start<'m> {
         self.tree.visit_near(point, may_face, visit);
     }
 
-    /// Gap to the closest segment into which the node projects, or in whose wedge with the next
-    /// segment it lies.
+    /// Gap to the closest segment into which the node projects, or in whose wedge with the next segment the node lies.
     fn gap(&self, slave: usize) -> Option<InitialGap> {
         let mut closest: Option<(f64, usize)> = None;
         self.visit_faced(self.x[slave], |i| {
@@ -157,16 +156,16 @@ impl<'m> Start<'m> {
         self.contact.bulges[segment].below(on_chord)
     }
 
-    /// Distance from segment `i`, if the node projects into it.
+    /// Distance of the node from segment `i`, if the node projects into this segment.
     fn over(&self, slave: usize, i: usize) -> Option<(f64, usize)> {
         let p = self.faced(slave, i)?;
         let is_over = (-PROJECTION_BEYOND_ENDS..=1.0 + PROJECTION_BEYOND_ENDS).contains(&p.xi);
         is_over.then_some((p.gap.abs(), i))
     }
 
-    /// Distance from the end of segment `i`, if the node lies between the normals of `i` and the
-    /// next segment. The function returns the segment with the larger gap outside a convex corner,
-    /// and with the smaller gap inside a concave one.
+    /// Distance of the node from the end of segment `i`, if the node lies between the normals of `i` and the next
+    /// segment. The function returns the segment with the larger gap outside a convex corner, and the segment with the
+    /// smaller gap inside a concave corner.
     fn in_wedge(&self, slave: usize, i: usize) -> Option<(f64, usize)> {
         let j = self.contact.next[i]?;
         let (p, q) = (self.faced(slave, i)?, self.faced(slave, j)?);
@@ -177,8 +176,8 @@ impl<'m> Start<'m> {
         is_between.then_some((distance, segment))
     }
 
-    /// Projection of a node on a segment that it may face. The segment must not contain the node, and must be
-    /// penetrated by less than its length; if node and segment belong to the same body, the node must be in front.
+    /// Projection of a node on a segment that the node may face. The segment must not contain the node, and must be
+    /// penetrated by less than its length. If node and segment belong to the same body, the node must be in front.
     fn faced(&self, slave: usize, i: usize) -> Option<Projection> {
         let [a, b] = self.contact.segments[i];
         let p = self.project(slave, i);
@@ -197,7 +196,7 @@ impl<'m> Start<'m> {
             .then_some(p)
     }
 
-    /// Whether the surface of a node that may be pressed out of a body faces a segment, that is, lies in front of the
+    /// Whether the surface of a node whose overlap the contact removes faces a segment, that is, lies in front of the
     /// parallel to the segment through the node.
     fn is_opposite(&self, slave: usize, p: &Projection) -> bool {
         let adjacent = self.adjacent.as_ref().and_then(|all| all.get(&slave));
@@ -211,7 +210,7 @@ impl<'m> Start<'m> {
 /// Angle (rad) that covers the round-off of directions, and projections beyond the ends of a segment.
 const ANGLE_ROUND_OFF: f64 = 1e-5;
 
-/// Fan of the normals of some segments and of the corners behind them: all directions within an angle from a middle
+/// Fan of the normals of some segments and of the corners at their ends: all directions within some angle from a middle
 /// direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct NormalFan {
@@ -225,7 +224,7 @@ pub(super) struct NormalFan {
 }
 
 impl NormalFan {
-    /// The fan of a segment with the ends `[a, b]` and of the corner between it and the `next` one.
+    /// The fan of a segment with the ends `[a, b]` and of the corner to the `next` segment.
     pub fn new([a, b]: [[f64; 2]; 2], next: Option<[[f64; 2]; 2]>) -> Self {
         let of = |[a, b]: [[f64; 2]; 2]| {
             let normal = project(a, a, b).normal;
@@ -242,7 +241,7 @@ impl NormalFan {
         }
     }
 
-    /// The fan of both groups of segments.
+    /// The fan of two groups of segments together.
     pub fn join(self, other: Self) -> Self {
         let apart = turn(self.middle, other.middle);
         let low = f64::min(-self.half, apart - other.half);
@@ -256,10 +255,11 @@ impl NormalFan {
 
     /// Whether a point may face one of the segments, which all lie within a circle.
     ///
-    /// A point p may face a segment if p lies along a normal of the fan from a point of the circle, in front of it or
-    /// at most the longest segment h behind it. The angle phi between p - c and the middle of the fan is then at most
-    /// alpha + beta, with sin beta = r/|p - c|; or it is at least pi - alpha - beta with |p - c| cos(phi - alpha) + r
-    /// >= -h.
+    /// A point p may face a segment if p lies along a normal of the fan from a point of the circle, in front of this
+    /// point or behind it by at most the length h of the longest segment. With the circle's centre c and radius r and
+    /// the angle alpha of the fan, let phi be the angle between p - c and the middle of the fan, and sin beta = r/|p -
+    /// c|. Then phi is at most alpha + beta, or it is at least pi - alpha - beta with |p - c| cos(phi - alpha) + r >=
+    /// -h.
     pub fn may_face(&self, point: [f64; 2], circle: &Circle) -> bool {
         let d = difference(circle.centre, point);
         let distance = length(d);
@@ -289,8 +289,8 @@ mod tests {
     use crate::contact::Interior;
     use crate::model::{Element, ElementType, Mesh};
 
-    /// Gap of a node at `s` to the roof over the nodes 1, 2, 3 at the heights 0, `top`, 0; the roof
-    /// has the body `body`.
+    /// Gap of a node at `s` to the roof over the nodes 1, 2, 3 at the heights 0, `top`, 0; the roof belongs to the body
+    /// `body`.
     fn gap(top: f64, s: [f64; 2], body: usize) -> Option<f64> {
         let contact = ContactSurfaces::new(vec![0], &[], vec![[1, 2], [2, 3]]);
         let x = [s, [2.0, 0.0], [0.0, top], [-2.0, 0.0]];

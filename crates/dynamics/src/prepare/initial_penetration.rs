@@ -12,10 +12,9 @@ use std::collections::{HashMap, HashSet};
 /// Number of nodes that are examined for a slave surface.
 const FEW: usize = 8;
 
-/// Reports slave nodes that start inside the master body: deep ones as errors, shallow ones, which
-/// the first increment pushes out, as warnings. Bodies on the same side of a common face are errors
-/// too, since all gaps are zero there and contact would never close. A pair without a node that
-/// faces the other surface is a warning.
+/// Reports slave nodes that start inside the master body: deep nodes as errors, and shallow nodes, which the first
+/// increment pushes out, as warnings. Bodies on the same side of a common face are errors, since all gaps are zero
+/// there and contact would never close. A pair without a node that faces the other surface is a warning.
 pub(super) fn report_penetrations(
     model: &Model,
     surfaces: &[ContactSurfaces],
@@ -55,7 +54,8 @@ pub(super) fn report_penetrations(
     }
 }
 
-/// Initial gaps of a contact plus the overlaps that it allows at the start: one for each slave node, or one for all.
+/// Initial gaps of a contact plus the overlaps that it allows at the start: one overlap for each slave node, or one for
+/// all nodes.
 fn left_gaps(
     gaps: &[InitialGap],
     contact: &ContactSurfaces,
@@ -70,7 +70,7 @@ fn left_gaps(
     gaps.iter().map(left).collect()
 }
 
-/// Warns about contacts that are to press out an overlap although there is none.
+/// Warns about contacts that are to remove an overlap although the surfaces do not overlap.
 fn report_no_overlap(model: &Model, overlaps: &[Vec<f64>], d: &mut Diagnostics) {
     let has_overlap = |contact: usize| overlaps[contact].iter().any(|o| *o > 0.0);
     for (i, contact) in model.contacts.iter().enumerate() {
@@ -93,8 +93,8 @@ fn report_no_overlap(model: &Model, overlaps: &[Vec<f64>], d: &mut Diagnostics) 
     }
 }
 
-/// The deepest slave node of a contact that is deeper inside the master body, at the positions `x`, than it may be at
-/// the start.
+/// The deepest slave node of a contact, at the positions `x`, if this node is deeper inside the master body than a node
+/// may be at the start.
 pub(crate) fn deepest_fault(
     contact: &ContactSurfaces,
     x: &[[f64; 2]],
@@ -106,8 +106,7 @@ pub(crate) fn deepest_fault(
     faults.max_by(|a, b| depth(a).total_cmp(&depth(b)))
 }
 
-/// Warns about pairs without a node that faces the master; of pairs given in both orders only those
-/// without such a node in either order.
+/// Warns about pairs without a node that faces the master; of two pairs in both orders only if neither has such a node.
 fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnostics) {
     let faced: HashSet<[usize; 2]> = model
         .contacts
@@ -151,8 +150,8 @@ fn report_nothing_faced(model: &Model, gaps: &[Vec<InitialGap>], d: &mut Diagnos
     }
 }
 
-/// Whether the nodes of a slave surface project on segments of the master and lie behind them. The function examines a
-/// few nodes instead of all.
+/// Whether the nodes of a slave surface project on segments of the master and lie behind these segments. The function
+/// examines only a few nodes of the surface.
 fn lies_behind(model: &Model, slave: &Surface, master: &Surface) -> bool {
     let x = &model.mesh.coordinates;
     let (nodes, segments) = (slave.nodes(&model.mesh), master.segments(&model.mesh));

@@ -6,7 +6,7 @@ use super::{InitialGap, PreparedModel};
 use crate::linear::factor_entries;
 use crate::model::{Bodies, Mesh};
 
-/// Bytes of the program before it reads a model.
+/// Bytes that the program needs before it reads a model.
 const PROGRAM: usize = 30 << 20;
 
 /// Bytes of a number or an index.
@@ -21,8 +21,8 @@ const VECTORS: usize = 70;
 const MATRICES: usize = 3;
 const CONTACT_MATRICES: usize = 2;
 
-/// Number of factors: those of K*, and the lists, fronts and remainders during a factorisation, which need as much
-/// memory. With contacts there are also the factors of M, which impulses need.
+/// Number of sets of factors: one for K*, and one for the lists, fronts and remainders of a factorisation, which need
+/// as much memory. With contacts a run also needs the factors of M, for impulses.
 const FACTORS: usize = 2;
 const CONTACT_FACTORS: usize = 1;
 
@@ -72,7 +72,7 @@ impl MemoryNeed {
     }
 }
 
-/// Near pairs, all or those between the same bodies.
+/// Pairs that are near at the start: all pairs, or the pairs between the same bodies.
 #[derive(Default)]
 struct NearPairs {
     nodes: Vec<usize>,
@@ -95,8 +95,8 @@ impl NearPairs {
     }
 }
 
-/// Memory for the near pairs. If the memory of the pairs between the same bodies is much less, it is used instead,
-/// since their problems are then solved by blocks.
+/// Memory for the near pairs. If the memory of the pairs between the same bodies is much less, this memory is the
+/// result, since the problems of these pairs are then solved by blocks.
 fn contact(prepared: &PreparedModel) -> u64 {
     let bodies = Bodies::new(&prepared.model.mesh).of_node;
     let gaps = prepared.gaps.iter().flatten();
@@ -114,7 +114,7 @@ fn contact(prepared: &PreparedModel) -> u64 {
     if blocks <= all / 4 { blocks } else { all }
 }
 
-/// For each node the nodes that elements couple it with, and itself, in increasing order.
+/// For each node the node itself and the nodes with which elements couple it, in increasing order.
 fn neighbours(mesh: &Mesh) -> Vec<Vec<usize>> {
     let mut counts = vec![1; mesh.node_count()];
     for nodes in mesh.elements.iter().map(|element| &element.nodes) {

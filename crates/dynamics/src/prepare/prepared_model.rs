@@ -12,7 +12,7 @@ use crate::model::Model;
 use std::collections::HashMap;
 
 /// A model with its nodes adjusted, its contact surfaces and the initial gaps between them. Mesh and contacts of a
-/// prepared model do not change any more; the settings of steps may.
+/// prepared model do not change any more; the settings of steps may change.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PreparedModel {
     /// The model with adjusted nodes.
@@ -22,7 +22,7 @@ pub struct PreparedModel {
     /// Gaps of the slave nodes of each contact in the reference configuration, without nodes that
     /// face no segment.
     pub gaps: Vec<Vec<InitialGap>>,
-    /// Overlaps of all slave nodes of contacts that press them out in the first step (length); empty for other
+    /// Overlaps of all slave nodes of contacts that remove overlaps in the first step (length); empty for other
     /// contacts.
     pub overlaps: Vec<Vec<f64>>,
     /// Moved nodes, one contact after the other.
@@ -32,7 +32,7 @@ pub struct PreparedModel {
 }
 
 /// Prepares a model; reports adjusted nodes, elements that the adjustment spoils, and initial
-/// penetration. Returns `None` if there are errors.
+/// penetration. `None` if there are errors.
 pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
     let prepared = PreparedModel::new(model);
     report_adjusted(&prepared.model, &prepared.adjusted, d);
@@ -49,7 +49,8 @@ pub fn prepare(model: Model, d: &mut Diagnostics) -> Option<PreparedModel> {
     (!d.has_errors()).then_some(prepared)
 }
 
-/// Overlaps of all slave nodes of a contact (length): their depths in a body that their own surface faces.
+/// Overlaps of all slave nodes of a contact (length): the depths of the nodes in a body that the surface of the nodes
+/// faces.
 fn overlaps(contact: &ContactSurfaces, gaps: &[InitialGap], x: &[[f64; 2]]) -> Vec<f64> {
     let inside = gaps.iter().filter(|gap| gap.is_inside(contact, x));
     let depths: HashMap<usize, f64> = inside.map(|gap| (gap.slave, -gap.gap)).collect();

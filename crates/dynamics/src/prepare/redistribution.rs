@@ -1,8 +1,8 @@
-//! Redistribution of the mass of contact surfaces: nodes without mass, and the nodes that carry
-//! their mass, V = P V. See docs/theory/elements.md, Redistributed mass.
+//! Redistribution of the mass of contact surfaces: nodes without mass, and the nodes that carry their mass; velocities
+//! satisfy V = P V. See docs/theory/elements.md, Redistributed mass.
 //!
-//! With `LANDING=RETURN` a bar of 50 elements that hits a wall keeps 1.0000 of its energy; with the mass at the surface
-//! it keeps 0.994 (docs/impact.md).
+//! With `LANDING=RETURN` a bar of 50 elements that hits a wall keeps 1.0000 of its energy if its mass is redistributed,
+//! and 0.994 if the mass stays at the surface (docs/impact.md).
 
 use std::collections::{BTreeSet, HashMap};
 use std::f64::consts::TAU;
@@ -13,15 +13,16 @@ use crate::contact::ContactSurfaces;
 use crate::model::{ElementsAtNodes, Face, Mesh, Model};
 use crate::vectors::{angle, difference, length, polygon_area};
 
-/// Rings of elements round a node in which its donors are sought: the wider number if the narrower one is not
-/// sufficient.
+/// Numbers of rings of elements round a node in which its donors are sought: the larger number is used if the smaller
+/// number is not sufficient.
 const RINGS: [usize; 2] = [2, 3];
 
 /// A node with its weight in the velocity of another node.
 type Donor = (usize, f64);
 
-/// The redistribution P of the mass of contact surfaces: nodes without mass, whose velocities in the kinetic energy are
-/// those of their donors, v_i = sum w_ij v_j, eq. (2.17). The redistribution is empty with `CONTACT MASS=CONSISTENT`.
+/// The redistribution P of the mass of contact surfaces: nodes without mass, whose velocities in the kinetic energy
+/// follow from the velocities of their donors, v_i = sum w_ij v_j, eq. (2.17). The redistribution is empty with
+/// `CONTACT MASS=CONSISTENT`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Redistribution {
     /// Nodes without mass, increasing, with their donors, which have mass.
@@ -33,8 +34,8 @@ pub struct Redistribution {
 impl Redistribution {
     /// The redistribution of the mass at the given contacts of a model.
     ///
-    /// Donors are nodes that cannot be without mass. Nodes without suitable weights become donors too, until all others
-    /// have weights; the result does not depend on the order of the nodes.
+    /// Donors are nodes that cannot be without mass. Nodes without suitable weights keep their mass and become donors,
+    /// until all other nodes have weights; the result does not depend on the order of the nodes.
     pub fn new(model: &Model, contacts: &[ContactSurfaces]) -> Self {
         let around = Neighbours::new(&model.mesh);
         let nodes = contact_nodes(model, contacts);
@@ -80,7 +81,7 @@ impl Redistribution {
         place.ok().map(|place| self.massless[place].1.as_slice())
     }
 
-    /// v <- P v over all dofs, at those dofs for which `moves` is true.
+    /// Replaces velocities v over all dofs by P v, at those dofs for which `moves` is true.
     pub fn follow(&self, v: &mut [f64], moves: impl Fn(usize) -> bool) {
         for (node, donors) in &self.massless {
             for i in 0..2 {
@@ -101,7 +102,7 @@ impl Redistribution {
         }
     }
 
-    /// f <- P^T f over all dofs.
+    /// Replaces forces f over all dofs by P^T f.
     pub fn hand_on(&self, f: &mut [f64]) {
         for (node, donors) in &self.massless {
             for i in 0..2 {
@@ -157,8 +158,8 @@ impl<'m> Neighbours<'m> {
     }
 }
 
-/// Nodes of the contact surfaces of deformable bodies, increasing, each with whether it may be without mass. Nodes at
-/// the edge of a hole may not be without mass, nor may those that equations, springs, dashpots or rigid bodies tie.
+/// Nodes of the contact surfaces of deformable bodies, increasing; each is marked if it may be without mass. Nodes at
+/// the edge of a hole may not be without mass, nor may nodes in equations, springs, dashpots or rigid bodies.
 pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<(usize, bool)> {
     let mesh = &model.mesh;
     let mut may = outer_nodes(mesh);
@@ -202,8 +203,8 @@ pub(super) fn contact_nodes(model: &Model, contacts: &[ContactSurfaces]) -> Vec<
     nodes.into_iter().filter_map(on_body).collect()
 }
 
-/// For every node of an exterior face, whether it lies only on outer edges of bodies; `None` for nodes inside and
-/// without elements.
+/// For every node of an exterior face, whether the node lies only on outer edges of bodies; `None` for nodes inside a
+/// body and for nodes without elements.
 fn outer_nodes(mesh: &Mesh) -> Vec<Option<bool>> {
     let mut outer = vec![None; mesh.node_count()];
     for edge in edges(mesh) {
@@ -218,7 +219,7 @@ fn outer_nodes(mesh: &Mesh) -> Vec<Option<bool>> {
 }
 
 /// Closed edges of the bodies, each as its faces in order. If elements meet in only a node, the edge continues along
-/// the element from which it came to the node.
+/// the element along which it came to the node.
 fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
     let segments = |face: &Face| face.segments(mesh);
     let faces: Vec<[usize; 2]> = mesh.outline().iter().flat_map(segments).collect();
@@ -256,22 +257,23 @@ fn edges(mesh: &Mesh) -> Vec<Vec<[usize; 2]>> {
 /// Least number of donors: three points determine an affine function.
 const LEAST_DONORS: usize = 3;
 /// Largest sum of |w|; a node whose weights have a larger sum is not extrapolated from its donors. Weights of regular
-/// meshes are ratios of small integers with sums up to 6; sums slightly above 6 do not occur there.
+/// meshes are ratios of small integers with sums up to 6; sums slightly above 6 do not occur in such meshes.
 const MOST_WEIGHT: f64 = 6.0 + 1e-6;
 /// Least width of the donors, relative to their length: narrower donors lie on a line up to the digits of their
 /// coordinates.
 const LEAST_WIDTH: f64 = 1e-3;
 
-/// Weights of donors at the positions `donors` for a node at `x`; they are affine, and larger for
-/// nearer donors:
+/// Weights of donors at the positions `donors` for a node at `x`; the weights reproduce affine functions, and are
+/// larger for nearer donors:
 ///
 /// ```text
 /// p_j = (1, (X_j - X)/h),  phi_j = (h/r_j)²,  r_j = |X_j - X|,  h = min r_j
 /// w_j = phi_j p_j.G^-1 e1,  G = sum phi_j p_j p_j^T                           eq. (2.18)
 /// ```
 ///
-/// The weights satisfy sum w_j = 1 and sum w_j X_j = X. Returns `None` if the donors are too few, lie nearly on a line,
-/// or lie only on one side far away. Neither a rigid motion of all points nor their order changes the weights.
+/// The weights w_j of donors at X_j for a node at X satisfy sum w_j = 1 and sum w_j X_j = X. `None` if the donors are
+/// too few, lie nearly on a line, or lie only on one side far away. Neither a rigid motion of all points nor their
+/// order changes the weights.
 pub(super) fn weights(x: [f64; 2], donors: &[[f64; 2]]) -> Option<Vec<f64>> {
     if donors.len() < LEAST_DONORS {
         return None;
@@ -308,7 +310,7 @@ pub(super) fn weights(x: [f64; 2], donors: &[[f64; 2]]) -> Option<Vec<f64>> {
 /// S = G_rr - G_r1 G_1r/G_11,  (width/length)² = det S/(tr S)²                 eq. (2.19)
 /// ```
 ///
-/// The width is NaN if all donors are in one place.
+/// The width of the donors is NaN if all donors are in one place.
 fn width(g: &Matrix3<f64>) -> f64 {
     let scatter = |i: usize, k: usize| g[(i, k)] - g[(i, 0)] * g[(0, k)] / g[(0, 0)];
     let [xx, xy, yy] = [scatter(1, 1), scatter(1, 2), scatter(2, 2)];
@@ -320,7 +322,7 @@ fn width(g: &Matrix3<f64>) -> f64 {
 mod tests_of_weights {
     use super::*;
 
-    /// Points of a grid that is bent, times `scale`.
+    /// Points of a bent grid, multiplied by `scale`.
     fn grid(scale: f64) -> Vec<[f64; 2]> {
         let at = |k: u32| (f64::from(k % 5), f64::from(k / 5));
         let bent =
@@ -375,8 +377,8 @@ mod tests_of_weights {
     }
 
     proptest::proptest! {
-        /// A node on or near the line of its donors keeps its mass wherever the line lies and whatever the last digits
-        /// of its points are; with a layer of elements of usable thickness the node gives its mass up.
+        /// A node on or near the line of its donors keeps its mass, wherever the line lies and whatever the last digits
+        /// of the coordinates are. If the layer of elements has a usable thickness, the node gives its mass up.
         #[test]
         fn donors_nearly_on_a_line_give_none_in_any_frame(
             angle in -4.0..4.0_f64,
@@ -569,8 +571,8 @@ pub(crate) mod tests {
         model
     }
 
-    /// With two layers the donors lie on a line, and some nodes lie on this line too; with three layers the donors do
-    /// not.
+    /// With two layers the donors lie on a line, and some nodes also lie on this line; with three layers the donors do
+    /// not lie on a line.
     #[test]
     fn round_off_turns_and_places_do_not_decide_over_mass() {
         for (rows, count) in [(2, 0), (3, 16)] {

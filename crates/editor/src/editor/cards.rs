@@ -13,14 +13,14 @@ use std::sync::Arc;
 /// Deepest nesting of included files, and largest number of files of a deck.
 const MOST: (usize, usize) = (20, 1000);
 
-/// The part, the instance or the deck that the names of a card belong to.
+/// The part, the instance or the deck to which the names of a card belong.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum Scope {
     /// The whole deck.
     Deck,
-    /// The part whose name has this key.
+    /// The part whose name has the given key.
     Part(Arc<str>),
-    /// The instance whose name has this key.
+    /// The instance whose name has the given key.
     Instance(Arc<str>),
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Piece {
     pub value: Option<(String, Spot)>,
 }
 
-/// A keyword line with the lines that continue it.
+/// A keyword line with its continuation lines.
 #[derive(Debug, Clone)]
 pub(super) struct Head {
     /// Place of the keyword with its star.
@@ -162,7 +162,7 @@ pub(super) struct DeckFile {
     pub path: PathBuf,
     /// Revision of the file that was read.
     revision: u64,
-    /// The earlier card that the first data lines of the file belong to.
+    /// The earlier card to which the first data lines of the file belong.
     pub continues: Option<usize>,
 }
 
@@ -203,7 +203,7 @@ impl Cards {
         cards
     }
 
-    /// Whether these cards are up to date with the files.
+    /// Whether the cards are up to date with the files.
     pub fn are_of(&self, files: &Files) -> bool {
         let is_same = |file: &DeckFile| {
             let known = files.get(&file.path);
@@ -218,7 +218,7 @@ impl Cards {
         self.files.iter().position(|file| file.path == path)
     }
 
-    /// The card that a line of a file belongs to.
+    /// The card to which a line of a file belongs.
     pub fn at(&self, file: usize, line: usize) -> Option<&Card> {
         let of_file = |card: &&Card| card.file == file && card.head.spot.line <= line;
         let own = self.all.iter().rposition(|card| of_file(&card));
@@ -337,7 +337,7 @@ impl Cards {
         }
     }
 
-    /// The card to which data lines belong at this point.
+    /// The card to which data lines belong at the present point of reading.
     fn owner(&self) -> Option<usize> {
         let is_owner = |card: &Card| card.head.name() != "INCLUDE";
         self.all.iter().rposition(is_owner)
@@ -359,7 +359,7 @@ pub(super) fn key(text: &str) -> Arc<str> {
     Text { text, span }.name_key().into()
 }
 
-/// The fields of a data line of a card with their places, and what each field holds where this is known.
+/// The fields of a data line of a card with their places, and the content of each field where it is known.
 pub(super) fn fields_of<'t>(
     card: &Card,
     text: &'t str,

@@ -30,7 +30,7 @@ pub(super) struct Job {
     pub root: PathBuf,
     /// Texts of files that are open in the editor, by their whole paths.
     pub unsaved: BTreeMap<PathBuf, Rope>,
-    /// Addresses (URIs) that the editor uses for these files.
+    /// Addresses (URIs) that the editor uses for the files.
     pub addresses: BTreeMap<PathBuf, Url>,
     /// Signal that ends the check early.
     pub interrupt: Interrupt,

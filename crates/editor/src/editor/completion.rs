@@ -123,7 +123,7 @@ fn continues(document: &Document, card: &Card, line: usize) -> bool {
         && between.into_iter().all(is_silent)
 }
 
-/// The field that a text ends with.
+/// The field with which a text ends.
 fn last_field(text: &str) -> &str {
     let mut is_inside = false;
     let mut start = 0;
@@ -136,7 +136,7 @@ fn last_field(text: &str) -> &str {
     text.get(start..).unwrap_or_default().trim_start()
 }
 
-/// Keywords that the program reads; those that may stand behind `card` come first.
+/// Keywords that the program reads; keywords that may stand behind `card` come first.
 fn all_keywords(card: Option<&Card>) -> Vec<Choice> {
     let block = card.map_or("", |card| card.head.name());
     let read = keywords().filter(|keyword| keyword.status == Status::Read);

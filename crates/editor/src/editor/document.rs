@@ -1,6 +1,6 @@
-//! The text of a file that is being edited. The time of a change depends only on the number of lines that it touches:
-//! pieces of the text remember which of their lines are keyword lines or hold words, and only changed pieces are
-//! examined again.
+//! The text of a file that is being edited. The time of a change depends only on the number of lines that the change
+//! touches. Pieces of the text remember which of their lines are keyword lines or hold words, and only changed pieces
+//! are examined again.
 
 use crate::deck::{Line, LineKind};
 use crate::diagnostics::FileId;
@@ -43,12 +43,12 @@ pub(super) struct Spot {
     pub line: usize,
     /// First character.
     pub start: usize,
-    /// The character behind the last one.
+    /// The character behind the last character of the range.
     pub end: usize,
 }
 
 impl Document {
-    /// A document with this text.
+    /// A document with a given text.
     pub fn new(text: &str) -> Document {
         let rope = Rope::from_str(text);
         let lines = text.split('\n').map(Cow::from);
@@ -63,7 +63,7 @@ impl Document {
         self.rope.clone()
     }
 
-    /// Number of lines; the last one may be empty.
+    /// Number of lines; the last line may be empty.
     pub fn line_count(&self) -> usize {
         self.rope.len_lines()
     }
@@ -108,7 +108,8 @@ impl Document {
         self.renew(first, last, new_last);
     }
 
-    /// Renews the pieces of the lines from `first` to `last` after a change that makes `new_last` of the line `last`.
+    /// Renews the pieces of the lines from `first` to `last` after a change by which the line `last` becomes the line
+    /// `new_last`.
     fn renew(&mut self, first: usize, last: usize, new_last: usize) {
         let mut start = 0;
         let mut from = 0;
@@ -131,7 +132,7 @@ impl Document {
         self.pieces.splice(from..to, anew);
     }
 
-    /// Number of the character at a position; a position beyond the end of its line or of the text counts as that end.
+    /// Number of the character at a position; a position beyond the end of its line or of the text counts as this end.
     fn character(&self, position: Position) -> usize {
         let line = position.line as usize;
         if line >= self.rope.len_lines() {

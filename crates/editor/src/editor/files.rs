@@ -1,5 +1,5 @@
-//! The files that the server knows: files that are open in the editor, and files of the disk that they include or that
-//! include them.
+//! The files that the server knows: files that are open in the editor, and files on the disk that include these or are
+//! included by them.
 
 use super::document::Document;
 use crate::deck::open_regular;
@@ -17,7 +17,7 @@ const MOST_NEIGHBOURS: usize = 200;
 /// Largest number of bytes that are read to find a deck that includes a file.
 const MOST_BYTES: u64 = 1 << 28;
 
-/// Number of folders above a file that are searched for a deck that includes it.
+/// Number of folders above a file that are searched for a deck that includes the file.
 const FOLDERS_ABOVE: usize = 2;
 
 /// A file.
@@ -25,7 +25,7 @@ const FOLDERS_ABOVE: usize = 2;
 pub(super) struct File {
     /// Text of the file.
     pub document: Document,
-    /// Address (URI) of the file in the editor, if it is open there.
+    /// Address (URI) of the file in the editor, if the file is open there.
     pub open: Option<Url>,
     /// A number that increases with every change of the file.
     pub revision: u64,
@@ -47,7 +47,7 @@ impl Files {
         self.all.get(path)
     }
 
-    /// A file, which is read from the disk if it is not known; `None` if it cannot be read.
+    /// A file, which is read from the disk if the server does not know it; `None` if the file cannot be read.
     pub fn load(&mut self, path: &Path) -> Option<&File> {
         if !self.all.contains_key(path) {
             let (text, stamp) = read(path)?;
@@ -144,7 +144,7 @@ fn read(path: &Path) -> Option<(String, Option<(SystemTime, u64)>)> {
     Some((text, stamp))
 }
 
-/// Decks near a file whose text contains the name of the file, so that one of them may include it.
+/// Decks near a file whose text contains the name of the file, so that such a deck may include the file.
 pub(super) fn neighbours(path: &Path) -> Vec<PathBuf> {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
         return Vec::new();

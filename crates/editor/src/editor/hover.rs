@@ -6,7 +6,7 @@ use super::symbols::Occurrence;
 use super::workspace::{Place, Workspace};
 use lsp_types::Range;
 
-/// Explanation of a place, and the range of characters that it explains.
+/// Explanation of a place, and the range of characters to which the explanation belongs.
 pub(super) fn hover(workspace: &Workspace, place: &Place) -> Option<(String, Range)> {
     let document = workspace.document(&place.view, place.file)?;
     let of_name = place
@@ -25,7 +25,7 @@ pub(super) fn hover(workspace: &Workspace, place: &Place) -> Option<(String, Ran
     Some((text.trim_end().to_owned(), document.range(spot)))
 }
 
-/// Kind of the object that a name means, the lines that define it, and the number of its uses.
+/// Kind of the object that a name means, the lines that define the object, and the number of its uses.
 fn about(workspace: &Workspace, place: &Place, one: &Occurrence) -> String {
     let symbols = &place.view.symbols;
     let what = one.symbol.what.name();

@@ -8,7 +8,8 @@ use crate::diagnostics::{Diagnostics, Span};
 use lsp_types::{Location, Range, TextEdit, Url, WorkspaceEdit};
 use std::collections::HashMap;
 
-/// Place of the definition of a name, beginning of a block that ends here, or file that is named here.
+/// For a place in a deck: the definition of the name there, the beginning of a block that ends there, or the file that
+/// is named there.
 pub(super) fn definitions(workspace: &Workspace, place: &Place) -> Vec<Location> {
     let view = &place.view;
     let location = |one: &Occurrence| workspace.location(view, one.file, one.spot);
@@ -66,7 +67,7 @@ pub(super) fn references(
         .collect()
 }
 
-/// Range of the name at a place, if it can be renamed.
+/// Range of the name at a place, if the object can be renamed.
 pub(super) fn changeable(workspace: &Workspace, place: &Place) -> Option<Range> {
     let found = place.occurrence().filter(|one| one.is_known)?;
     let location = workspace.location(&place.view, found.file, found.spot)?;
@@ -76,7 +77,7 @@ pub(super) fn changeable(workspace: &Workspace, place: &Place) -> Option<Range> 
 /// Renames the name at a place everywhere in the deck.
 ///
 /// # Errors
-/// There is no name at the place, the new name is not allowed, or another object of the same kind has it.
+/// There is no name at the place, the new name is not allowed, or another object of the same kind has the new name.
 pub(super) fn rename(
     workspace: &Workspace,
     place: &Place,

@@ -5,10 +5,10 @@ use super::document::{Document, Spot};
 use crate::deck::{Kind, Scope};
 use lsp_types::{DocumentSymbol, Position, Range, SymbolKind};
 
-/// Keywords of blocks that end with an `END` keyword.
+/// Keywords that begin blocks which end with an `END` keyword.
 const WITH_END: [&str; 4] = ["PART", "ASSEMBLY", "INSTANCE", "STEP"];
 
-/// An entry whose end is not known yet.
+/// An entry of the outline whose end is not known yet.
 struct Open {
     /// Name of the keyword; empty for the file itself.
     name: &'static str,
@@ -64,7 +64,7 @@ fn close_until(open: &mut Vec<Open>, is_last: impl Fn(&Open) -> bool) {
     }
 }
 
-/// Closes the last entry; it ends at `end` or with its last child, whichever is later.
+/// Closes the last entry, which ends at `end` or with its last child, whichever is later.
 fn close(open: &mut Vec<Open>, end: Option<Position>) {
     let Some(last) = open.pop() else { return };
     let (Some(mut entry), Some(outer)) = (last.entry, open.last_mut()) else {

@@ -42,8 +42,8 @@ pub struct Program {
     pub version: &'static str,
 }
 
-/// Serves an editor on standard input and output until the session ends; returns whether it ended with a shutdown
-/// request.
+/// Serves an editor on standard input and output until the session ends; returns whether the session ended with a
+/// shutdown request.
 ///
 /// # Errors
 /// The connection is broken, or a message breaks the protocol.
@@ -125,7 +125,7 @@ struct Server {
     jobs: Sender<Job>,
     /// Main file of the deck that is being checked, and the signal that ends the check.
     running: Option<(PathBuf, Interrupt)>,
-    /// Decks that wait for a check, with the time at which it is due.
+    /// Decks that wait for a check, with the time at which the check is due.
     waiting: BTreeMap<PathBuf, Instant>,
     /// Diagnostics that the editor has, by deck and file.
     shown: HashMap<PathBuf, BTreeMap<PathBuf, Vec<Diagnostic>>>,
@@ -176,7 +176,7 @@ impl Server {
         let _ = self.out.send(message);
     }
 
-    /// Starts the check of the deck that has waited longest, if its check is due and no other deck is being checked.
+    /// Starts the check of the deck that has waited longest, if this check is due and no other deck is being checked.
     fn start_check(&mut self) {
         let now = Instant::now();
         let due = self.waiting.iter().filter(|(_, when)| **when <= now);
@@ -223,7 +223,7 @@ impl Server {
         }
     }
 
-    /// Sends the diagnostics of a deck to the editor, and removes those of files that the deck no longer has.
+    /// Sends the diagnostics of a deck to the editor, and removes the diagnostics of files that the deck no longer has.
     fn show(&mut self, outcome: Outcome) {
         let Some(found) = outcome.found else { return };
         let old = self.shown.insert(outcome.root.clone(), found);
@@ -233,7 +233,7 @@ impl Server {
         paths.iter().for_each(|path| self.publish(path));
     }
 
-    /// Sends the diagnostics of a file to the editor: those of all decks that have it.
+    /// Sends the diagnostics of a file to the editor, from all decks that contain the file.
     fn publish(&self, path: &Path) {
         let Some(uri) = self.workspace.files.uri(path) else {
             return;

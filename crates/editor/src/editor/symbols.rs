@@ -1,5 +1,5 @@
-//! Names of a deck: where each is defined and used. Names are resolved as in the reader: in a part, a name means an
-//! object of the part, or else of the whole deck; outside a part, the name of the instance stands before it.
+//! Names of a deck: where each name is defined and used. Names are resolved as in the reader: in a part, a name means an
+//! object of the part, or else of the whole deck; outside a part, the name of the instance stands before the name.
 
 use super::cards::{Card, Cards, Instance, Scope, fields_of, is_first_row, key, spot};
 use super::document::{Document, Spot};
@@ -15,14 +15,14 @@ const PI: &str = "pi";
 /// Kind of the object that a name means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) enum What {
-    /// An object of this kind.
+    /// An object of the given kind.
     Thing(Kind),
     /// A parameter of `*PARAMETER`.
     Parameter,
 }
 
 impl What {
-    /// Words for this kind of object.
+    /// Words for the kind of object.
     pub fn name(self) -> &'static str {
         match self {
             What::Thing(kind) => kind.name(),
@@ -36,7 +36,7 @@ impl What {
 pub(super) struct Symbol {
     /// Kind of the object.
     pub what: What,
-    /// Scope that the object belongs to.
+    /// Scope to which the object belongs.
     pub scope: Scope,
     /// Key by which the name is compared.
     pub key: Arc<str>,
@@ -49,15 +49,15 @@ pub(super) struct Occurrence {
     pub file: usize,
     /// Place of the name, without quotation marks and without the name of its instance.
     pub spot: Spot,
-    /// The name as typed at this place.
+    /// The name as typed at the place.
     pub typed: String,
     /// The object that the name means.
     pub symbol: Symbol,
-    /// Whether this place defines the name.
+    /// Whether the place defines the name.
     pub defines: bool,
     /// Whether the name is defined anywhere.
     pub is_known: bool,
-    /// Whether the name stands between quotation marks here.
+    /// Whether the name stands between quotation marks at the place.
     pub is_quoted: bool,
 }
 
@@ -355,7 +355,7 @@ impl Collector<'_> {
         });
     }
 
-    /// The scopes in which a name is looked up that stands in `scope`, the nearest first.
+    /// The scopes in which a name in `scope` is looked up, the nearest scope first.
     fn scopes(&self, scope: &Scope) -> Vec<Scope> {
         let mut all = match scope {
             Scope::Deck => Vec::new(),
@@ -425,7 +425,7 @@ struct Split {
     typed_own: String,
 }
 
-/// A text without quotation marks around it, its place, and whether it had quotation marks.
+/// A text without its quotation marks, the place of the text, and whether it had quotation marks.
 fn unquoted(spot: Spot, text: &str) -> (Spot, String, bool) {
     let inner = text
         .strip_prefix('"')

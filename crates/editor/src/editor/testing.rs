@@ -1,5 +1,5 @@
-//! Tests over all decks of the repository: names resolve as the reader resolves them, changed names leave a deck as it
-//! was, and no text and no edit stops the server.
+//! Tests over all decks of the repository: names resolve as the reader resolves them, a deck with changed names has the
+//! same meaning, and no text and no edit stops the server.
 
 use super::completion::completion;
 use super::hover::hover;
@@ -37,7 +37,8 @@ fn decks() -> Vec<PathBuf> {
     all
 }
 
-/// The messages of the reader about a deck whose files have these texts: whether there is a model, and codes and lines.
+/// The messages of the reader about a deck whose files have the given texts: whether the deck gives a model, and codes
+/// and lines of the messages.
 fn said(deck: &Path, texts: BTreeMap<PathBuf, String>) -> (bool, Vec<(&'static str, u32)>) {
     let mut sources = Sources::with_unsaved(texts, Interrupt::default());
     let mut d = Diagnostics::new();

@@ -21,7 +21,7 @@ pub(super) struct View {
     pub symbols: Symbols,
 }
 
-/// All files and decks.
+/// All files and decks of the editor.
 #[derive(Debug, Default)]
 pub(super) struct Workspace {
     /// The files.
@@ -45,14 +45,14 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The name at this place.
+    /// The name at the place.
     pub fn occurrence(&self) -> Option<&Occurrence> {
         self.view.symbols.at(self.file, self.line, self.column)
     }
 }
 
 impl Workspace {
-    /// Stores a file that the editor has opened, and searches for a deck that includes it.
+    /// Stores a file that the editor has opened, and searches for a deck that includes the file.
     pub fn open(&mut self, uri: &Url, text: &str) -> PathBuf {
         let path = self.files.open(uri, text);
         if self.root_of(&path) == path {
@@ -72,7 +72,7 @@ impl Workspace {
         self.views.remove(path);
     }
 
-    /// Cards and names of the deck with this main file.
+    /// Cards and names of the deck with the given main file.
     pub fn view(&mut self, root: &Path) -> Arc<View> {
         let known = self.views.get(root);
         if let Some(view) = known.filter(|view| view.cards.are_of(&self.files)) {
@@ -85,7 +85,7 @@ impl Workspace {
         view
     }
 
-    /// The main file of the deck that a file belongs to; the file itself if no deck includes it.
+    /// The main file of the deck to which a file belongs; the file itself if no deck includes the file.
     pub fn root_of(&mut self, path: &Path) -> PathBuf {
         let mut root = path.to_owned();
         for _ in 0..DEEPEST {

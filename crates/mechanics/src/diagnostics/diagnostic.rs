@@ -1,5 +1,6 @@
-//! Diagnostics with severity, code, place, message, label and help, in which overlong echoes of the deck are cut. Also
-//! the collection of the diagnostics of one deck, with counts by severity, strictness, and order by place.
+//! Diagnostics with severity, code, place, message, label and help, in which overlong echoes of the deck are cut. The
+//! module also has the collection of the diagnostics of one deck, with counts by severity, strictness, and order by
+//! place.
 
 use super::code::Code;
 use std::collections::{BinaryHeap, HashMap, HashSet};
@@ -15,7 +16,7 @@ const LONGEST_TEXT: usize = 1000;
 pub enum Severity {
     /// An error: the deck is rejected.
     Error,
-    /// A warning: the deck is read, but differently from what it says.
+    /// A warning: the deck is read, but perhaps not as its author intends.
     Warning,
     /// Worth knowing.
     Note,
@@ -95,7 +96,7 @@ impl Diagnostic {
     }
 }
 
-/// A diagnostic that has been added, or `None` if it was added before.
+/// A diagnostic that has been added, or `None` if the same diagnostic was added before.
 pub struct Added<'d>(Option<&'d mut Diagnostic>);
 
 impl Added<'_> {
@@ -153,7 +154,7 @@ pub enum Strictness {
     Normal,
     /// Unknown keywords and parameters are left out with a warning.
     Lenient,
-    /// Warnings are errors.
+    /// Every warning is an error.
     Strict,
 }
 
@@ -163,7 +164,7 @@ pub struct Diagnostics {
     strictness: Strictness,
     items: Vec<Diagnostic>,
     counts: [usize; 3],
-    /// Places of the first diagnostics of each severity, of as many as are shown.
+    /// Places in the list of the diagnostics that are shown: the first diagnostics of each severity.
     first: [BinaryHeap<Option<Span>>; 3],
     said: HashMap<Code, HashSet<String>>,
     /// Instance in which a line of a part was reported, by code and place.
@@ -197,7 +198,7 @@ impl Diagnostics {
         self.push(Diagnostic::error(code, span, message))
     }
 
-    /// Adds an error about a deck that cannot be opened, so there is no line to show.
+    /// Adds an error about a deck that cannot be opened, so the message shows no line.
     pub fn error_without_place(&mut self, code: Code, message: impl Into<String>) -> Added<'_> {
         self.push(Diagnostic::new(Severity::Error, code, None, message.into()))
     }
@@ -212,14 +213,14 @@ impl Diagnostics {
         self.push(Diagnostic::note(code, span, message))
     }
 
-    /// Adds a warning at `span` unless one with the same code and message was added this way before.
+    /// Adds a warning at `span` unless a warning with the same code and message was added by this function before.
     pub fn warning_once(&mut self, code: Code, span: Span, message: impl AsRef<str>) -> Added<'_> {
         self.once(code, message.as_ref(), |message| {
             Diagnostic::warning(code, span, message)
         })
     }
 
-    /// Adds a note at `span` unless one with the same code and message was added this way before.
+    /// Adds a note at `span` unless a note with the same code and message was added by this function before.
     pub fn note_once(&mut self, code: Code, span: Span, message: impl AsRef<str>) -> Added<'_> {
         self.once(code, message.as_ref(), |message| {
             Diagnostic::note(code, span, message)
@@ -240,8 +241,7 @@ impl Diagnostics {
         self.push(make(message.to_owned()))
     }
 
-    /// Adds a diagnostic; one at a line of a part is added once, however many instances the part
-    /// has.
+    /// Adds a diagnostic; a diagnostic at a line of a part is added once, however many instances the part has.
     pub fn push(&mut self, mut diagnostic: Diagnostic) -> Added<'_> {
         diagnostic.severity = self.judge(&diagnostic);
         self.errors += usize::from(diagnostic.severity == Severity::Error);
@@ -258,7 +258,7 @@ impl Diagnostics {
         Added(self.items.last_mut())
     }
 
-    /// Whether this diagnostic was already added for the same line of the part in another instance.
+    /// Whether a diagnostic was already added for the same line of the part in another instance.
     fn is_of_another_instance(&mut self, diagnostic: &Diagnostic) -> bool {
         let Some(span) = diagnostic.span.filter(|span| span.instance > 0) else {
             return false;
@@ -271,15 +271,13 @@ impl Diagnostics {
         *first.or_insert(span.instance) != span.instance
     }
 
-    /// Number of errors found; if a part has several instances, it is larger than the number of
-    /// errors counted.
+    /// Number of errors found, including repetitions in further instances of a part, which [`Self::count`] leaves out.
     pub fn errors_found(&self) -> usize {
         self.errors
     }
 
-    /// Whether a diagnostic would be shown if it were the last one. Suggestions that need time are
-    /// made only for diagnostics that would be shown; later diagnostics never make hidden ones
-    /// visible.
+    /// Whether a diagnostic would be shown if it were added as the last one. Suggestions that need time are made only
+    /// for diagnostics that would be shown; later diagnostics never make hidden diagnostics visible.
     pub fn may_show(&self, diagnostic: &Diagnostic) -> bool {
         let first = &self.first[self.judge(diagnostic) as usize];
         first.len() < SHOWN || first.peek().is_some_and(|last| diagnostic.span < *last)
@@ -307,7 +305,7 @@ impl Diagnostics {
         self.counts[severity as usize]
     }
 
-    /// All diagnostics except those of one code.
+    /// All diagnostics except the diagnostics with one code.
     pub fn without(&self, code: Code) -> Diagnostics {
         let mut rest = Diagnostics::with_strictness(self.strictness);
         for item in self.items.iter().filter(|item| item.code != code) {
@@ -322,8 +320,7 @@ impl Diagnostics {
         self.items.iter()
     }
 
-    /// All diagnostics in the order of their places (file, line, column); those without a place
-    /// come first.
+    /// All diagnostics in the order of their places (file, line, column); diagnostics without a place come first.
     pub fn sorted(&self) -> Vec<&Diagnostic> {
         let mut sorted: Vec<&Diagnostic> = self.items.iter().collect();
         sorted.sort_by_key(|item| (item.span, item.severity));

@@ -42,8 +42,8 @@ fn object(item: &Diagnostic, sources: &Sources) -> Value {
     })
 }
 
-/// File and range: lines and columns are in characters, from 1; the end is the column after the
-/// last character.
+/// File and range of a diagnostic: lines and columns count from 1, columns in characters; the end is the column after
+/// the last character.
 fn place(span: Span, sources: &Sources) -> Value {
     let span = sources.typed(span);
     json!({

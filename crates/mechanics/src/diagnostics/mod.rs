@@ -1,7 +1,7 @@
 //! Errors and warnings with their place in the deck.
 //!
-//! All code that reads a deck adds [`Diagnostic`]s to one [`Diagnostics`] and goes on, so one run
-//! reports every fault. The text of the diagnostics is made once, by [`Diagnostics::render`].
+//! All code that reads a deck adds [`Diagnostic`]s to one [`Diagnostics`] and goes on reading, so one run reports every
+//! fault. The text of the diagnostics is made once, by [`Diagnostics::render`].
 
 mod code;
 mod diagnostic;

@@ -7,8 +7,8 @@ use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet}
 use std::ops::Range;
 
 impl Diagnostics {
-    /// Text of the diagnostics in the order of their places: at most 20 of each severity, then the
-    /// number of further ones.
+    /// Text of the diagnostics in the order of their places: at most 20 of each severity, then the number of further
+    /// diagnostics.
     pub fn render(&self, sources: &Sources, colour: bool) -> String {
         let renderer = match colour {
             true => Renderer::styled(),
@@ -93,7 +93,7 @@ fn snippet<'a>(
     )
 }
 
-/// The place without source text, for a file that has no such line, for example an empty file.
+/// The place without source text, for a file that does not have the line, for example an empty file.
 fn origin(span: Span, sources: &Sources) -> Option<Origin<'_>> {
     let source = sources.get(span.file)?;
     let origin = Origin::path(source.name()).line(span.line as usize);

@@ -17,8 +17,8 @@ pub struct Source {
     name: String,
     text: Arc<String>,
     included_at: Option<Span>,
-    /// Number of lines that end before every piece of the text; they are counted for the first
-    /// message.
+    /// Number of lines that end before every piece of the text; the lines are counted when the first message needs
+    /// them.
     ends_before: OnceLock<Vec<usize>>,
 }
 
@@ -94,7 +94,7 @@ pub struct EarlierDeck {
     pub settings: Vec<String>,
     /// Step and increment of the step from which the job continues.
     pub place: [usize; 2],
-    /// Whether the increment from which the job continues is the last one of its step.
+    /// Whether the increment from which the job continues is the last increment of its step.
     pub ends_step: bool,
     /// The deck that the earlier deck continues.
     pub before: Option<Box<EarlierDeck>>,
@@ -106,20 +106,19 @@ pub struct Sources {
     files: Vec<Source>,
     /// Names of the instances of parts, and the place where each is defined.
     instances: Vec<(String, Span)>,
-    /// Values that the reader of the deck sees in place of text in a line, for example of
-    /// parameters.
+    /// Values, for example of parameters, that the reader of the deck sees in place of text in a line.
     replaced: BTreeMap<(u32, u32), Vec<Replaced>>,
-    /// Values of parameters that replace those of the deck.
+    /// Values of parameters that replace the values in the deck.
     settings: Vec<String>,
     /// The deck that the main deck continues.
     earlier: Option<EarlierDeck>,
     /// Texts of an editor that are read in place of files, by the full paths of these files.
     unsaved: BTreeMap<PathBuf, String>,
-    /// Request to stop reading the deck because its result is not needed any more.
+    /// Request to stop reading the deck because the result is not needed any more.
     interrupt: Interrupt,
 }
 
-/// Request to stop reading a deck because its result is not needed any more.
+/// Request to stop reading a deck because the result is not needed any more.
 #[derive(Debug, Clone, Default)]
 pub struct Interrupt(Arc<AtomicBool>);
 
@@ -134,8 +133,8 @@ impl Interrupt {
         self.0.load(Ordering::Relaxed)
     }
 
-    /// If the end of reading has been requested, unwinds to the caller that requested it, which catches the panic. The
-    /// panic prints nothing.
+    /// If the end of reading has been requested, unwinds to the caller that requested the end, which catches the panic.
+    /// The panic prints nothing.
     pub fn end_if_asked(&self) {
         if self.is_asked() {
             std::panic::resume_unwind(Box::new(self.clone()));
@@ -154,8 +153,8 @@ pub struct Replaced {
     pub typed: Span,
 }
 
-/// The canonical path of a file, which is the same for all paths to it; the given path if the file
-/// does not exist.
+/// The canonical path of a file, which is the same for all paths to the file; the given path if the file does not
+/// exist.
 pub fn whole_path(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }
@@ -166,8 +165,8 @@ impl Sources {
         Sources::default()
     }
 
-    /// Sources without files; `settings` are values `name=expression` of parameters in place of those in the deck, and
-    /// `earlier` is the deck that it continues.
+    /// Sources without files; `settings` are values `name=expression` of parameters in place of the values in the deck,
+    /// and `earlier` is the deck that the main deck continues.
     pub fn with_settings(settings: &[String], earlier: Option<EarlierDeck>) -> Sources {
         Sources {
             settings: settings.to_vec(),
@@ -204,7 +203,7 @@ impl Sources {
         self.earlier.as_ref()
     }
 
-    /// Values of parameters that replace those of the deck.
+    /// Values of parameters that replace the values in the deck.
     pub fn settings(&self) -> &[String] {
         &self.settings
     }
@@ -235,8 +234,7 @@ impl Sources {
         FileId(self.files.len() as u32)
     }
 
-    /// Adds an instance of a part that is placed at `place`; returns the number by which spans
-    /// refer to it.
+    /// Adds an instance of a part that is placed at `place`; returns the number by which spans refer to this instance.
     pub fn add_instance(&mut self, name: &str, place: Span) -> u32 {
         self.instances.push((name.to_string(), place));
         self.instances.len() as u32
@@ -295,7 +293,7 @@ impl Sources {
         self.files.iter().map(Source::line_count).sum()
     }
 
-    /// The texts of all files; each except the first begins with a comment line with its name.
+    /// The texts of all files; each text except the first begins with a comment line that names its file.
     pub fn full_text(&self) -> String {
         let mut all = String::new();
         for source in &self.files {

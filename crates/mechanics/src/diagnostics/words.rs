@@ -4,8 +4,8 @@
 /// Largest number of typing errors for which a suggestion is made.
 const MOST_ERRORS: usize = 2;
 
-/// The candidate that `word` was probably meant to be: the one with the fewest typing errors, if
-/// these are few relative to the length of the word.
+/// The candidate that `word` was probably meant to be: the candidate with the fewest typing errors, if they are few
+/// relative to the length of the word.
 pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = capitals(word).collect();
     let allowed = (word.len() / 3).min(MOST_ERRORS);
@@ -31,7 +31,7 @@ fn capitals(word: &str) -> impl Iterator<Item = char> {
 }
 
 /// Number of insertions, deletions, replacements and exchanges of neighbours between two words;
-/// `None` if it is more than allowed.
+/// `None` if the number is larger than allowed.
 fn typing_errors(a: &[char], b: &[char], allowed: usize) -> Option<usize> {
     let mut before_last = Vec::new();
     let mut last: Vec<usize> = (0..=b.len()).collect();
@@ -60,7 +60,7 @@ fn typing_errors(a: &[char], b: &[char], allowed: usize) -> Option<usize> {
 /// Largest number of names that a message lists.
 const LISTED: usize = 8;
 
-/// Text that lists the defined names, or the first few if there are many.
+/// Text that lists the defined names, or the first few names if there are many.
 pub fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> String {
     let names: Vec<&str> = names.collect();
     let plural = match kind {
@@ -77,7 +77,7 @@ pub fn list_of<'n>(kind: &str, names: impl Iterator<Item = &'n str>) -> String {
     }
 }
 
-/// Width, in columns, of the screen and of text files for it.
+/// Width of the screen, and of text files for the screen (columns).
 pub const WIDTH: usize = 80;
 
 /// A text in lines; each line except the first is indented by `blanks` blanks, and the first keeps
@@ -116,7 +116,7 @@ pub fn in_lines<'t>(
 /// Range of magnitudes that are written without an exponent.
 const PLAIN: std::ops::Range<f64> = 1e-6..1e16;
 
-/// A number in a message, with an exponent if it would otherwise be a long row of zeros.
+/// A number in a message, with an exponent if the number would otherwise have a long row of zeros.
 pub fn shown(x: f64) -> String {
     match x == 0.0 || PLAIN.contains(&x.abs()) {
         true => x.to_string(),

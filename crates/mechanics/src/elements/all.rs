@@ -56,7 +56,7 @@ pub struct Elements {
     /// Reference positions of all nodes (length).
     coordinates: Vec<[f64; 2]>,
     dofs: usize,
-    /// Memory of the sweeps over tangents, kept between them and locked during a sweep.
+    /// Memory of the sweeps over tangents, kept from sweep to sweep and locked during a sweep.
     space: Mutex<Vec<f64>>,
 }
 
@@ -184,7 +184,7 @@ impl Elements {
         elements.chain(self.connectors.iter().map(PlacedConnector::nodes))
     }
 
-    /// Sets the lengths L of bodies that turn, each with the pair of dofs of its angle.
+    /// Sets the lengths L of bodies that turn; each length comes with the pair of dofs of the body's angle.
     pub fn measure_angles(&mut self, lengths: impl Iterator<Item = (usize, f64)>) {
         for (pair, length) in lengths {
             let connectors = self.connectors.iter_mut();
@@ -244,8 +244,7 @@ impl Elements {
         }
     }
 
-    /// Internal variables of all points before the first increment, element by element; they are
-    /// all zero.
+    /// Internal variables of all points before the first increment, element by element; all of these are zero.
     pub fn initial_variables(&self) -> Vec<f64> {
         vec![0.0; self.variables]
     }
@@ -283,13 +282,13 @@ pub struct Inverted {
 pub struct Updated {
     /// Internal variables of all points, element by element.
     pub variables: Vec<f64>,
-    /// Energy dissipated on the way to these variables (force length).
+    /// Energy dissipated since the start of the increment (force length).
     pub dissipated: f64,
 }
 
 impl Elements {
-    /// Internal variables at the end of a motion, and the energy dissipated on the way. The variables of `motion` do
-    /// not change: the increment commits or drops the returned variables.
+    /// Internal variables at the end of a motion, and the energy dissipated within the motion. The variables in
+    /// `motion` do not change: the caller commits or drops the returned variables.
     pub fn update(&self, motion: Motion) -> Updated {
         let mut updated = Updated {
             variables: motion.committed.to_vec(),
@@ -302,7 +301,7 @@ impl Elements {
     }
 
     /// Strain energy, mean stress and mean strain of every element at the end of a motion, with the internal variables
-    /// there.
+    /// at this end.
     pub fn evaluate(&self, motion: Motion) -> Arc<[ElementResult]> {
         let mut results: Arc<[_]> = vec![ElementResult::default(); self.len()].into();
         let all = Arc::make_mut(&mut results);
@@ -330,9 +329,9 @@ impl Elements {
         self.chunks.iter().any(|chunk| chunk.expands())
     }
 
-    /// Potential, at the end of a motion, of the elements that expand, eq. (2.55) (force length): the energy that they
-    /// store there, and the energy dissipated on the way. The work of the internal force at one temperature is the
-    /// change of this potential.
+    /// Potential, at the end of a motion, of the elements that expand, eq. (2.55) (force length): the energy that these
+    /// elements store there, and the energy dissipated within the motion. At a constant temperature, the work of the
+    /// internal force is the change of the potential.
     ///
     /// ```text
     /// Phi(U; T) = min over z of W(U, z; T) + D(z)
@@ -352,15 +351,15 @@ impl Elements {
         potential
     }
 
-    /// Energy, at the end of a motion, that the elements that expand store with the internal variables there (force
-    /// length).
+    /// Energy that the elements that expand store at the end of a motion, with the internal variables at this end
+    /// (force length).
     pub fn stored_by_expanding(&self, motion: Motion) -> f64 {
         let expanding = self.chunks.iter().filter(|chunk| chunk.expands());
         let results = expanding.flat_map(|chunk| chunk.evaluate(motion));
         results.map(|result| result.energy).sum()
     }
 
-    /// Internal force F of elements and springs at the end of a motion, or its energy-momentum form from start to
+    /// Internal force F of elements and springs at the end of a motion, or the energy-momentum form of F from start to
     /// end, 2 N entries.
     ///
     /// # Errors
@@ -393,8 +392,7 @@ impl Elements {
         rayon::current_num_threads() > 1 && self.len() >= 2 * PARALLEL_CHUNK
     }
 
-    /// Adds up forces of the elements, chunk by chunk. Returns false if an element is turned inside
-    /// out.
+    /// Adds up forces of the elements, chunk by chunk. The result is false if an element is turned inside out.
     fn sum_chunks(&self, sum: impl Fn(&dyn Chunk) -> bool + Sync + Send) -> bool {
         if self.is_worth_threads() {
             let sums = self.chunks.par_iter().map(|chunk| sum(&**chunk));
@@ -437,8 +435,8 @@ impl Elements {
     }
 
     /// Calls `add(place, k)` with the tangent, or its positive part, of every element and spring that is `wanted`, and
-    /// possibly of others. The matrix k is D x D, column by column, in the configuration of [`Self::internal_force`].
-    /// The places of the elements are those of [`Self::connected`].
+    /// possibly of further elements. The matrix k is D x D, column by column, in the configuration of
+    /// [`Self::internal_force`]. The places of the elements are their places in [`Self::connected`].
     pub fn for_each_tangent(
         &self,
         motion: Motion,
@@ -449,8 +447,8 @@ impl Elements {
         self.sweep_tangents(motion, part, &wanted, &mut add);
     }
 
-    /// [`Self::for_each_tangent`] without a type parameter for the caller, so that it is compiled only once for the
-    /// many kinds of elements.
+    /// [`Self::for_each_tangent`] without a type parameter for the caller, so that this function is compiled only once
+    /// for the many kinds of elements.
     fn sweep_tangents(
         &self,
         motion: Motion,
@@ -485,8 +483,8 @@ impl Elements {
 }
 
 impl Elements {
-    /// K v with the tangent in the configuration of [`Self::internal_force`], 2 N entries. Elements
-    /// at whose nodes `v` is zero are skipped.
+    /// The product K v with the tangent K in the configuration of [`Self::internal_force`], 2 N entries. Elements at
+    /// whose nodes `v` is zero are skipped.
     pub fn tangent_product(&self, motion: Motion, v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.dofs];
         let moves = |&node: &usize| v[2 * node] != 0.0 || v[2 * node + 1] != 0.0;
@@ -497,7 +495,7 @@ impl Elements {
         product
     }
 
-    /// Nodes at a place of [`Self::connected`].
+    /// Nodes of the element, spring or dashpot at a place of [`Self::connected`].
     fn nodes_at(&self, place: usize) -> &[usize] {
         match place.checked_sub(self.len()) {
             None => self.nodes(place),
@@ -512,7 +510,7 @@ impl Elements {
             || self.dashpots().next().is_some()
     }
 
-    /// The dashpots, each with its place, which follows those of the elements.
+    /// The dashpots, each with its place in [`Self::connected`], behind the elements.
     fn dashpots(&self) -> impl Iterator<Item = (usize, &PlacedConnector)> {
         let all = (self.len()..).zip(&self.connectors);
         all.filter(|(_, connector)| connector.is_dashpot())
@@ -536,7 +534,8 @@ impl Elements {
         force
     }
 
-    /// Impulse that mass-proportional damping removes in a displacement increment, alpha M d, 2 N entries (force time).
+    /// Impulse alpha M d that mass-proportional damping removes in a displacement increment d, 2 N entries (force
+    /// time).
     pub fn mass_damping_impulse(&self, d: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; self.dofs];
         for damping in &self.mass_damping {
@@ -561,7 +560,7 @@ impl Elements {
 
     /// Calls `add(place, c)` with the damping matrices, or their positive parts, of every damped element and dashpot in
     /// an increment of length `dt`, eq. (4.19). The matrix c is D x D, column by column (force time/length). An element
-    /// may have two matrices, one of the viscosity and one proportional to its mass.
+    /// may have two damping matrices: of its viscosity, and proportional to its mass.
     pub fn for_each_damping(
         &self,
         (increment, dt): (Increment, f64),
@@ -592,7 +591,7 @@ impl Elements {
         }
     }
 
-    /// Cd v with the damping matrix in an increment of length `dt`, 2 N entries.
+    /// The product Cd v with the damping matrix Cd in an increment of length `dt`, 2 N entries.
     pub fn damping_product(&self, increment: Increment, dt: f64, v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; self.dofs];
         self.for_each_damping((increment, dt), TangentPart::Whole, |place, c| {
@@ -602,14 +601,14 @@ impl Elements {
     }
 }
 
-/// Adds the vector of an element with these nodes to a sum over all dofs.
+/// Adds the vector of an element, given by its nodes, to a sum over all dofs.
 fn add_vector(nodes: &[usize], vector: &[f64], sum: &mut [f64]) {
     for (dof, value) in dofs(nodes).zip(vector) {
         sum[dof] += value;
     }
 }
 
-/// Adds k v to a product over all dofs, where k is a matrix of an element with these nodes.
+/// Adds k v to a product over all dofs, where k is the matrix of an element, given by its nodes.
 fn add_product(nodes: &[usize], k: &[f64], v: &[f64], product: &mut [f64]) {
     let d = 2 * nodes.len();
     for (j, column) in dofs(nodes).enumerate() {

@@ -1,6 +1,7 @@
 //! Elements of one shape next to each other, and their kinematics: displacement gradients and strains at the
-//! integration points, in one configuration or between two (energy-momentum form). Also the sums over the integration
-//! points that give force and tangent. See docs/theory/elements.md and docs/numerics.md, Sweeps over elements.
+//! integration points, in one configuration or between two configurations (energy-momentum form). Also the sums over
+//! the integration points that give force and tangent. See docs/theory/elements.md and docs/numerics.md, Sweeps over
+//! elements.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -25,7 +26,7 @@ pub type NodalLanes<const N: usize> = [[Lanes; N]; 2];
 pub struct ElementBlock<const N: usize, const P: usize> {
     /// Nodes of the elements, numbered within the chunk.
     pub nodes: [[u16; LANES]; N],
-    /// (dX/dr)^-1 at the integration points (1/length).
+    /// Inverse maps (dX/dr)^-1 at the integration points (1/length).
     pub inverse: [TensorLanes; P],
     /// Weights of the integration points (length^3).
     pub volume: [Lanes; P],
@@ -44,16 +45,16 @@ pub enum BlockMotion<const N: usize> {
 /// Displacement gradient at a point.
 #[derive(Clone, Copy, Default)]
 pub struct Gradient {
-    /// H in the plane of the section.
+    /// Displacement gradient H in the plane of the section.
     pub h: TensorLanes,
-    /// h = u_r/R around the axis, in a body of revolution.
+    /// Strain h = u_r/R around the axis, in a body of revolution.
     pub around: Lanes,
 }
 
 /// Deformation at one integration point.
 #[derive(Clone, Copy)]
 pub struct Deformation {
-    /// Displacement gradient in the strain-displacement matrix; in the energy-momentum form that of the mid
+    /// Displacement gradient in the strain-displacement matrix; in the energy-momentum form the gradient of the mid
     /// configuration.
     pub gradient: Gradient,
     /// Strains at which the material is evaluated.
@@ -64,14 +65,15 @@ pub struct Deformation {
 pub struct MovedBlock<'a, const N: usize, const P: usize, R> {
     /// The elements.
     pub block: &'a ElementBlock<N, P>,
-    /// 1/R at the integration points (1/length). The radius is infinite in plane strain, so 1/R is zero; elements of
-    /// the plane do not read it.
+    /// Inverse radius 1/R at the integration points (1/length). The radius is infinite in plane strain, so 1/R is zero;
+    /// elements of the plane do not read this value.
     pub over_radius: &'a [Lanes; P],
-    /// Reference data of the formulation other than the points.
+    /// Reference data of the formulation, except the data of the points.
     pub reference: &'a R,
     /// Displacements of the nodes.
     pub motion: BlockMotion<N>,
-    /// The elements' own variables that the last accepted increment has committed; empty at the start.
+    /// Variables of the elements (not of their points) that the last accepted increment has committed; empty at the
+    /// start.
     pub own_variables: [&'a [f64]; LANES],
 }
 
@@ -123,7 +125,7 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
         }
     }
 
-    /// Deformation at a point; det F is entered in `positive`.
+    /// Deformation at a point; the determinant det F is entered in `positive`.
     #[inline(always)]
     pub fn deformation<S: IntegratedShape<N, P>, const HOOP: bool>(
         &self,
@@ -145,7 +147,8 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
         from_fn(|a| self.over_radius[p] * S::FUNCTIONS.values[p][a])
     }
 
-    /// sum_p B_L^T S for stresses with their weights, in displacement gradients (force).
+    /// Forces sum_p B_L^T S for stresses that were multiplied by their weights and stored in displacement gradients
+    /// (force).
     #[inline(always)]
     pub fn nodal_forces<'a, S: IntegratedShape<N, P>, const HOOP: bool>(
         &self,
@@ -159,7 +162,7 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
         forces.sum::<S, N, HOOP>()
     }
 
-    /// Smallest det F at the points, in the mid configuration and at the end; NaN if one of them is
+    /// Smallest determinant det F at the points, in the mid configuration and at the end; NaN if one determinant is
     /// NaN.
     pub fn least_determinant<S: IntegratedShape<N, P>, const HOOP: bool>(&self) -> [f64; LANES] {
         let mut least = [f64::INFINITY; LANES];
@@ -190,9 +193,9 @@ impl<const N: usize, const P: usize, R> MovedBlock<'_, N, P, R> {
 
 /// Stresses at the points, in the form from which forces are computed.
 pub struct PointForces<const P: usize> {
-    /// F S J^-T times the weight, row by row.
+    /// The product F S J^-T times the weight of the point, row by row.
     q: [[[Lanes; 2]; P]; 2],
-    /// (1 + h) S_33/R times the weight; only bodies of revolution read it.
+    /// The value (1 + h) S_33/R times the weight of the point, which only bodies of revolution use.
     hoop: [Lanes; P],
 }
 
@@ -224,7 +227,7 @@ impl<const P: usize> PointForces<P> {
         }
     }
 
-    /// sum_p B_L^T S (force); in a body of revolution (1 + h) S_33 h_a/R is added along the radius, eq. (2.33).
+    /// Forces sum_p B_L^T S (force); in a body of revolution (1 + h) S_33 h_a/R is added along the radius, eq. (2.33).
     #[inline(always)]
     pub fn sum<S: IntegratedShape<N, P>, const N: usize, const HOOP: bool>(&self) -> NodalLanes<N> {
         let mut force = [S::nodal_sums(&self.q[0]), S::nodal_sums(&self.q[1])];
@@ -255,7 +258,7 @@ pub fn dot<const M: usize>(a: &[Lanes; M], b: &[Lanes; M]) -> Lanes {
     sum::<M>(|k| a[k] * b[k])
 }
 
-/// The smaller of two values; NaN if one is NaN.
+/// The smaller of two values; NaN if one value is NaN.
 pub fn smaller(a: f64, b: f64) -> f64 {
     if a < b || a.is_nan() { a } else { b }
 }
@@ -271,8 +274,8 @@ impl Deformation {
         }
     }
 
-    /// The deformation between two configurations, from H of the mid configuration and half its
-    /// change.
+    /// The deformation between two configurations, from the displacement gradient H of the mid configuration and half
+    /// the change of H.
     #[inline(always)]
     pub fn between<const HOOP: bool>(
         mid: Gradient,
@@ -289,7 +292,7 @@ impl Deformation {
 }
 
 impl Gradient {
-    /// Sum of this gradient and another.
+    /// Sum of two displacement gradients.
     #[inline(always)]
     pub fn plus(&self, other: &Gradient) -> Gradient {
         Gradient {
@@ -304,7 +307,7 @@ impl Gradient {
         self.around + 1.0
     }
 
-    /// E = (H + H^T + H^T H)/2 and E_33 = h + h²/2, eq. (2.2) and eq. (2.31).
+    /// Green-Lagrange strain E = (H + H^T + H^T H)/2 and E_33 = h + h²/2, eq. (2.2) and eq. (2.31).
     #[inline(always)]
     pub fn strain<const HOOP: bool>(&self) -> SymmetricLanes {
         let e = green_lagrange(&self.h);
@@ -338,7 +341,7 @@ impl Gradient {
         )
     }
 
-    /// Enters det F, and in bodies of revolution the stretch around the axis.
+    /// Enters det F, and in bodies of revolution also the stretch around the axis.
     #[inline(always)]
     pub fn is_positive<const HOOP: bool>(&self, others: Positive) -> Positive {
         let with_section = others.and(determinant(&self.h));
@@ -370,8 +373,8 @@ pub fn green_lagrange(h: &TensorLanes) -> SymmetricLanes {
     in_plane([h[0][0] + xx, h[1][1] + yy, shear])
 }
 
-/// (E0 + E1)/2 and (E1 - E0)/2 for F0 = F - G and F1 = F + G with F = I + H: E0 + E1 = 2 E(H) + G^T G, E1 - E0 = 2 (F^T
-/// G + G^T F).
+/// Mean (E0 + E1)/2 and half difference (E1 - E0)/2 of the strains of F0 = F - G and F1 = F + G with F = I + H: E0 + E1
+/// = 2 E(H) + G^T G, E1 - E0 = 2 (F^T G + G^T F).
 #[inline(always)]
 fn strain_change(h: &TensorLanes, g: &TensorLanes) -> (SymmetricLanes, SymmetricLanes) {
     let (e, square, f) = (
@@ -396,7 +399,7 @@ pub fn in_plane([x, y, w]: [Lanes; 3]) -> SymmetricLanes {
     SymmetricLanes::new(x, y, Lanes::ZERO, w)
 }
 
-/// A^T A/2, as components 11, 22 and 12.
+/// The tensor A^T A/2, as components 11, 22 and 12.
 #[inline(always)]
 fn half_of_square(a: &TensorLanes) -> [Lanes; 3] {
     let product = |i: usize, j: usize| (a[0][i] * a[0][j] + a[1][i] * a[1][j]) * 0.5;
@@ -430,8 +433,8 @@ pub fn times_transposed(a: &TensorLanes, b: &TensorLanes) -> TensorLanes {
 pub type MatrixLanes<const N: usize> = [[TensorLanes; N]; N];
 
 /// Adds the part of the strain around the axis to the tangent of a point, for a <= b. The row of B_L for the strain
-/// around the axis is b_a = (1 + h) h_a/R, which acts on displacements along the radius; `c` has C_33 of each component
-/// of the strain,
+/// around the axis is b_a = (1 + h) h_a/R, which acts on displacements along the radius. The array `c` holds the moduli
+/// between component 33 and each component of the strain,
 ///
 /// ```text
 /// b_a C_33,. B_b + its transpose + b_a b_b C_3333 + S_33 h_a h_b/R²
@@ -480,7 +483,7 @@ impl<const N: usize, const P: usize> ElementBlock<N, P> {
 
 /// Elasticity A = dP/dF of the first Piola-Kirchhoff stress P = F S.
 ///
-/// A_iIjJ = F_iK C_KILJ F_jL + delta_ij S_IJ; entry [i][2 j + J][I].
+/// Its components are A_iIjJ = F_iK C_KILJ F_jL + delta_ij S_IJ, in the entries [i][2 j + J][I].
 pub type Elasticity = [[[Lanes; 2]; 4]; 2];
 
 /// Elasticity A for a deformation gradient, a stress and its tangent in Voigt order.

@@ -1,5 +1,5 @@
 //! Chunks: elements of one type and material in blocks, with their common nodes. The data that a chunk reads and
-//! changes fit into the first caches; chunks are swept by any number of threads.
+//! changes fit into the first caches of a processor. Any number of threads sweeps over the chunks.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -43,23 +43,24 @@ pub struct TangentSweep<'a> {
     pub wanted: &'a (dyn Fn(usize) -> bool + Sync),
 }
 
-/// Elements that are swept together. A place is the number of an element among those that are swept together; otherwise
-/// elements are named by their indices.
+/// Elements that are swept together. A place is the number of an element among the elements that are swept together;
+/// otherwise elements are named by their indices.
 pub trait Chunk: Send + Sync {
     /// Elements (indices).
     fn elements(&self) -> &[usize];
 
-    /// Range of the internal variables of these elements among those of all elements.
+    /// Range of the internal variables of the elements among the variables of all elements.
     fn variables(&self) -> Range<usize>;
 
-    /// Adds the internal forces of the elements at the end of a motion, or in its energy-momentum form, to the sums.
-    /// Returns false if an element is turned inside out.
+    /// Adds the internal forces of the elements at the end of a motion, or their energy-momentum form, to the sums. The
+    /// result is false if an element is turned inside out.
     fn sum_forces(&self, motion: Motion) -> bool;
 
     /// Whether the material has viscosity.
     fn is_viscous(&self) -> bool;
 
-    /// Adds the viscous impulses in a motion, forces times the length of the increment, to the sums, eq. (4.16).
+    /// Adds the viscous impulses in a motion (viscous forces times the length of the increment) to the sums, eq.
+    /// (4.16).
     fn sum_viscous(&self, motion: Motion);
 
     /// Viscous work in a motion, times the length of the increment, eq. (4.18) (force length time).
@@ -84,16 +85,16 @@ pub trait Chunk: Send + Sync {
     /// Whether the material expands with its temperature.
     fn expands(&self) -> bool;
 
-    /// Writes the internal variables of the elements at the end of a motion into those of all elements, and returns the
-    /// energy dissipated on the way (force length).
+    /// Writes the internal variables of the elements at the end of a motion into the variables of all elements, and
+    /// returns the energy dissipated in the motion (force length).
     fn update(&self, motion: Motion, updated: &mut [f64]) -> f64;
 
     /// Tangent of an element in a motion, D x D column by column.
     fn tangent(&self, place: usize, motion: Motion) -> Vec<f64>;
 
-    /// Calls `add(element, k)` with the tangent of every element that is wanted, or in a block with a wanted one, D x D
-    /// column by column. The tangents are made in `space`; with several threads those of the whole chunk are made in
-    /// parallel.
+    /// Calls `add(element, k)` with the tangent (D x D, column by column) of every element in a block with at least one
+    /// wanted element. The tangents are made in `space`; with several threads the tangents of the whole chunk are made
+    /// in parallel.
     fn for_each_tangent(
         &self,
         sweep: TangentSweep,
@@ -102,7 +103,8 @@ pub trait Chunk: Send + Sync {
     );
 }
 
-/// Numbers of internal variables of one element: the number at its points, one after the other, and then its own.
+/// Numbers of internal variables of one element: first the number for its points, one after the other, then the number
+/// for the element itself.
 #[derive(Clone, Copy)]
 struct VariableLayout {
     of_points: usize,
@@ -127,8 +129,8 @@ struct Heating<const P: usize> {
 pub struct ChunkMaterial<'a> {
     pub law: PlaneLaw,
     pub viscosity: Option<Viscosity>,
-    /// Thermal expansion, and the temperature of every node at the start of the analysis; the list is empty if all are
-    /// zero.
+    /// Thermal expansion, and the temperature of every node at the start of the analysis; the list is empty if all
+    /// these temperatures are zero.
     pub expansion: Option<(Expansion, &'a [f64])>,
     pub plane: Plane,
 }
@@ -140,16 +142,16 @@ where
 {
     /// Indices of the elements, lane after lane and block after block.
     elements: Vec<usize>,
-    /// Node indices, increasing; blocks refer to places in this list. After the increasing indices come the nodes for
+    /// Node indices, increasing; blocks refer to places in the list. After the increasing indices come the nodes for
     /// the places of the last block that no element fills; they repeat the last element.
     nodes: Vec<usize>,
     /// Number of the increasing node indices.
     node_count: usize,
     blocks: Vec<ElementBlock<N, P>>,
-    /// 1/R at the points of every block (1/length); in the plane one entry of zeros serves for all
+    /// Inverse radii 1/R at the points of every block (1/length); in the plane one entry of zeros serves for all
     /// blocks.
     over_radius: Vec<[Lanes; P]>,
-    /// Reference data of the formulation, other than the points, of every block.
+    /// Reference data of the formulation, except the data of the points, of every block.
     references: Vec<F::Reference>,
     law: PlaneLaw,
     viscosity: Option<Viscosity>,
@@ -157,8 +159,8 @@ where
     layout: VariableLayout,
     /// Start of the internal variables of the first element.
     first_variable: usize,
-    /// Sums of the last sweep over the nodes, zero after they have been read; they are locked by the thread that
-    /// computes or reads them.
+    /// Sums of the last sweep over the nodes, zero after a thread has read them; the thread that computes or reads the
+    /// sums locks them.
     sums: Mutex<Vec<[f64; 2]>>,
     kind: PhantomData<S>,
 }
@@ -168,8 +170,8 @@ where
     S: IntegratedShape<N, P> + Send + Sync,
     F: Formulation<N, P, HOOP>,
 {
-    /// A chunk of elements (indices) with the nodes `of` each, node coordinates `x` and the given
-    /// thickness. The internal variables of the chunk begin at `first_variable`.
+    /// A chunk of elements (indices) with the nodes `of` each element, node coordinates `x` and the given thickness.
+    /// The internal variables of the chunk begin at `first_variable`.
     pub fn new(
         elements: Vec<usize>,
         of: &[[usize; N]],
@@ -261,8 +263,8 @@ where
         }
     }
 
-    /// Variables of the elements of a block among those of all elements; empty if there are none. Places that no
-    /// element fills have the variables of the last element.
+    /// Places of the variables of the elements of a block among the variables of all elements; empty if the elements
+    /// have no variables. Places that no element fills have the variables of the last element.
     #[inline(always)]
     fn variables_of<'a>(&self, all: &'a [f64], block: usize) -> [&'a [f64]; LANES] {
         let count = self.layout.count();
@@ -334,7 +336,7 @@ where
         }
     }
 
-    /// Adds the forces of all blocks, of the material or of its viscosity, to the sums.
+    /// Adds the forces of all blocks to the sums: the forces of the material or of its viscosity.
     fn sweep(&self, motion: Motion, viscosity: Option<&Viscosity>) -> Positive {
         let mut sums = self.sums.lock().unwrap_or_else(PoisonError::into_inner);
         if !self.is_strained(motion) {
@@ -392,7 +394,8 @@ where
         F::results::<S>(at, law)
     }
 
-    /// The law of a block in a motion, with the variables of its points, which are a part of those of all elements.
+    /// The law of a block in a motion, with the variables of its points, which are a part of the variables of all
+    /// elements.
     fn law_of<'a>(&'a self, block: usize, motion: Motion<'a>) -> LawInLanes<'a> {
         self.law_with(block, motion, self.of_points(motion.committed, block))
     }
@@ -439,7 +442,7 @@ where
     }
 
     /// Whether an element may be strained: its nodes have different displacements or move along the radius, or the
-    /// material is heated or has internal variables. No element of a fixed body is strained.
+    /// material is heated or has internal variables. For example, no element of a fixed body is strained.
     fn is_strained(&self, motion: Motion) -> bool {
         let differs = |u: &[f64]| {
             let u = u.as_chunks::<2>().0;
@@ -698,8 +701,8 @@ fn add_force<const N: usize, const P: usize, R>(
 }
 
 /// Temperatures at the points, from the temperatures of the nodes of every element. For linear elements the temperature
-/// is the mean of the nodes, for quadratic ones the linear or bilinear field between the corners: strains of
-/// displacements have the same degrees.
+/// is the mean over the nodes; for quadratic elements it is the linear or bilinear field between the corners. The
+/// strains of the displacements have the same degrees.
 fn temperatures<S: IntegratedShape<N, P>, const N: usize, const P: usize>(
     of: impl Fn(usize, usize) -> f64,
 ) -> [Lanes; P] {
@@ -720,7 +723,7 @@ fn place(nodes: &[usize], node: usize) -> u16 {
     nodes.partition_point(|&other| other < node) as u16
 }
 
-/// Writes the symmetric matrix of one element; the lanes contain the entries [a][b] with a <= b.
+/// Writes the symmetric matrix of one element; the lanes contain only the entries [a][b] with a <= b.
 fn write_matrix<const N: usize>(lane: usize, k: &MatrixLanes<N>, matrix: &mut [f64]) {
     for b in 0..N {
         for a in 0..b + 1 {

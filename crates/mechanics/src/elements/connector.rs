@@ -1,7 +1,7 @@
 //! Springs and dashpots: force, tangent, stored and dissipated energy. See docs/theory/elements.md, Springs and
 //! dashpots.
 //!
-//! Vectors of a connector have two entries for each of its nodes, like those of an element.
+//! Vectors of a connector have two entries for each of its nodes, like the vectors of an element.
 
 use nalgebra::{Matrix2, Vector2};
 use smallvec::SmallVec;
@@ -14,8 +14,8 @@ pub(super) type ConnectorVector = SmallVec<[f64; 4]>;
 /// Matrix with D x D entries, column by column.
 pub(super) type ConnectorMatrix = SmallVec<[f64; 16]>;
 
-/// Elongation of a connector, and its derivative with respect to the displacements of the nodes; along a line the two
-/// derivatives are opposite.
+/// Elongation of a connector, and its derivative with respect to the displacements of the nodes; for a connector along
+/// a line the derivatives at both nodes are opposite.
 struct Elongation {
     /// Elongation l - L (length).
     value: f64,
@@ -29,13 +29,13 @@ struct Elongation {
 struct Between {
     /// Elongations at the start and at the end of the motion.
     ends: [f64; 2],
-    /// Change l1 - l0, with only the round-off of d.
+    /// Change l1 - l0 of the elongation, with only the round-off of the displacement increment d.
     change: f64,
-    /// Vector g at each node with g.d = l1 - l0.
+    /// Discrete gradient at each node: the vector g with g.d = l1 - l0.
     gradient: [Vector2<f64>; 2],
-    /// Derivative of l1 with respect to the increment d at each node.
+    /// Derivative of the elongation l1 with respect to the increment d at each node.
     derivative: [Vector2<f64>; 2],
-    /// Derivative of g with respect to the increment at each node, for connectors between angles.
+    /// Derivative of the discrete gradient g with respect to the increment at each node, for connectors between angles.
     bend: [f64; 2],
 }
 
@@ -44,9 +44,9 @@ struct Between {
 pub struct ConnectorState {
     /// Elongation (length); between angles the difference of the angles.
     pub elongation: f64,
-    /// Rate of the elongation (length/time or 1/time).
+    /// Rate of the elongation (length/time), or of the difference of the angles (1/time).
     pub rate: f64,
-    /// Force, positive if it pulls its nodes together (force), or moment (force length).
+    /// Force, positive if it pulls the nodes together (force); between angles a moment (force length).
     pub force: f64,
 }
 
@@ -54,12 +54,12 @@ pub struct ConnectorState {
 #[derive(Debug, Clone)]
 pub struct PlacedConnector {
     connector: Connector,
-    /// Nodes of the connector; between angles the pairs of dofs to which the angles belong.
+    /// Nodes of the connector; between angles, the pairs of dofs to which the angles belong.
     nodes: SmallVec<[usize; 2]>,
     /// The lengths L of the bodies of both angles: the displacement at the dof of an angle theta is
     /// L theta.
     lengths: [f64; 2],
-    /// X_2 - X_1 of the reference configuration (length).
+    /// Vector X_2 - X_1 between the nodes in the reference configuration (length).
     reference: Vector2<f64>,
 }
 
@@ -221,7 +221,7 @@ impl PlacedConnector {
         nodes.flat_map(|g| [factor * g.x, factor * g.y]).collect()
     }
 
-    /// The matrix of a connector from its 2 x 2 blocks: `block(a, b)` belongs to the nodes a and b.
+    /// The matrix of a connector, made from 2 x 2 blocks: `block(a, b)` belongs to the nodes a and b.
     fn matrix(&self, block: impl Fn(usize, usize) -> Matrix2<f64>) -> ConnectorMatrix {
         let count = self.nodes().len();
         let mut matrix = SmallVec::new();
@@ -237,8 +237,8 @@ impl PlacedConnector {
         matrix
     }
 
-    /// Internal force of a spring at the end of a motion, F(l1) dl/du, or its energy-momentum form from start to
-    /// end, eq. (2.20): the mean of F between l0 and l1 along the discrete gradient.
+    /// Internal force of a spring at the end of a motion, F(l1) dl/du, or the energy-momentum form from start to end,
+    /// eq. (2.20): the mean of F between l0 and l1, along the discrete gradient.
     pub(super) fn force(&self, motion: Motion) -> ConnectorVector {
         let curve = &self.connector.curve;
         if self.is_dashpot() {
@@ -261,8 +261,8 @@ impl PlacedConnector {
         }
     }
 
-    /// Symmetric part of the tangent of [`Self::force`], in the energy-momentum form of twice the tangent as for
-    /// elements, or its positive part, eq. (2.21).
+    /// Symmetric part of the tangent of [`Self::force`], or the positive part of this matrix, eq. (2.21). In the
+    /// energy-momentum form the result is twice the tangent, as for elements.
     pub(super) fn tangent(&self, motion: Motion, part: TangentPart) -> ConnectorMatrix {
         let curve = &self.connector.curve;
         if self.is_dashpot() {
@@ -323,21 +323,21 @@ impl PlacedConnector {
         }
     }
 
-    /// Impulse of a dashpot in an increment of length `dt`, dt F((l1 - l0)/dt) along the discrete gradient, eq.
-    /// (2.22) (force time).
+    /// Impulse dt F((l1 - l0)/dt) of a dashpot, along the discrete gradient, in an increment of length `dt`, eq. (2.22)
+    /// (force time).
     pub(super) fn impulse(&self, [u0, u1]: Increment, dt: f64) -> ConnectorVector {
         let between = self.between(u0, u1);
         let force = self.connector.curve.at(between.change / dt);
         self.vector(dt * force, &between.gradient)
     }
 
-    /// Energy that a dashpot dissipates in an increment of length `dt`, times `dt`: (l1 - l0) F dt.
+    /// Energy that a dashpot dissipates in an increment of length `dt`, multiplied by `dt`: (l1 - l0) F dt.
     pub(super) fn work(&self, [u0, u1]: Increment, dt: f64) -> f64 {
         let change = self.between(u0, u1).change;
         change * dt * self.connector.curve.at(change / dt)
     }
 
-    /// Damping matrix dF/dv g g^T of a dashpot: the part of eq. (2.22) that is never indefinite
+    /// Damping matrix dF/dv g g^T of a dashpot: the part of the derivative of eq. (2.22) that is never indefinite
     /// (force time/length).
     pub(super) fn damping(&self, [u0, u1]: Increment, dt: f64) -> ConnectorMatrix {
         let Between {
@@ -413,8 +413,8 @@ mod tests {
         }
     }
 
-    /// For small displacements, and for small changes of large ones, forces keep their digits: forces do not contain
-    /// the round-off of coordinates.
+    /// For small displacements, and for small changes of large displacements, forces keep their digits: forces do not
+    /// contain the round-off of coordinates.
     #[test]
     fn forces_along_a_line_keep_their_digits() {
         let [spring, dashpot] =

@@ -8,12 +8,12 @@ use super::motion::{ElementMatrix, ElementVector, Increment, Motion, NO_MATRIX, 
 pub(super) struct MassDamping {
     /// Element (index).
     pub element: usize,
-    /// alpha M per direction, n x n column by column (mass/time).
+    /// Damping matrix alpha M per direction, n x n column by column (mass/time).
     pub mass: Vec<f64>,
 }
 
 impl MassDamping {
-    /// Impulse alpha M d at the nodes of the element, eq. (4.16).
+    /// Impulse alpha M d at the nodes of the element for a displacement increment d, eq. (4.16).
     pub fn impulse(&self, nodes: &[usize], d: &[f64]) -> ElementVector {
         let mut impulse = [0.0; MAX_DOFS];
         for (a, b, m) in self.entries(nodes.len()) {
@@ -24,14 +24,14 @@ impl MassDamping {
         impulse
     }
 
-    /// Work d.(alpha M d), eq. (4.18).
+    /// Work d.(alpha M d) of the impulse on the displacement increment d, eq. (4.18).
     pub fn work(&self, nodes: &[usize], d: &[f64]) -> f64 {
         let impulse = self.impulse(nodes, d);
         let terms = dofs(nodes).zip(impulse);
         terms.map(|(dof, p)| p * d[dof]).sum()
     }
 
-    /// Matrix alpha M for `n` nodes, eq. (4.19).
+    /// Damping matrix alpha M for `n` nodes, eq. (4.19).
     pub fn matrix(&self, n: usize) -> ElementMatrix {
         let mut matrix = NO_MATRIX;
         for (a, b, m) in self.entries(n) {
@@ -42,14 +42,14 @@ impl MassDamping {
         matrix
     }
 
-    /// Entries of alpha M for `n` nodes: row, column, value.
+    /// Entries of the damping matrix alpha M for `n` nodes: row, column, value.
     fn entries(&self, n: usize) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let entries = self.mass.iter().enumerate();
         entries.map(move |(k, &m)| (k % n, k / n, m))
     }
 }
 
-/// The motion in which viscosity acts: that of the increment in every integration scheme.
+/// The motion in which viscosity acts: the motion of the increment, in every integration scheme.
 pub(super) fn between([u0, u1]: Increment) -> Motion {
     Motion {
         start: Some(u0),
@@ -103,7 +103,7 @@ mod tests {
         Elements::new(&model)
     }
 
-    /// Elements of all laws in all formulations available for them.
+    /// Elements of all laws in all formulations available for these laws.
     fn all(damping: Damping) -> Vec<Elements> {
         let mean = ElementType {
             formulation: Formulation::MeanDilatation,
@@ -136,7 +136,7 @@ mod tests {
         (0..DOFS).map(|i| scale * (k * i as f64).sin()).collect()
     }
 
-    /// The displacements `u` of the nodes, followed by a rotation by an angle.
+    /// The displacements `u` of the nodes, followed by a rotation of all nodes by an angle.
     fn turned(u: &[f64], angle: f64) -> Vec<f64> {
         let (sin, cos) = angle.sin_cos();
         let turn = |n: usize| {

@@ -1,20 +1,20 @@
-//! Formulations with volume ratios of the element in place of those of its points (CPE4H, CAX4H, CPE8H, CPE8RH, CAX8H,
-//! CAX8RH; Simo, Taylor & Pister 1985), for nearly incompressible materials. The stored energy is that of the modified
-//! deformation gradient, eq. (2.9):
+//! Formulations with volume ratios of the element in place of the volume ratios of its points (CPE4H, CAX4H, CPE8H,
+//! CPE8RH, CAX8H, CAX8RH; Simo, Taylor & Pister 1985), for nearly incompressible materials. The stored energy is the
+//! energy of the modified deformation gradient, eq. (2.9):
 //!
 //! ```text
 //! Fbar = (theta/J)^(1/n) F,  det Fbar = theta
 //! ```
 //!
-//! Here theta is the mean of J, or linear in the element. See docs/theory/elements.md. Without strain across the plane
-//! n is 2, since F_zz stays 1 and the material keeps its plane strain law (de Souza Neto et al. 1996); with all
-//! components n is 3.
+//! Here the volume ratio theta is the mean of J over the element, or linear in the element. See
+//! docs/theory/elements.md. Without strain across the plane n is 2, since F_zz stays 1 and the material keeps its plane
+//! strain law (de Souza Neto et al. 1996); with all components of the strain n is 3.
 //!
 //! # Derivation
 //!
-//! The functions psi_k are orthogonal, and the integral of psi_k² over the element is its volume V; theta = sum psi_k
-//! int psi_k J dOmega/V. The strain of the material is Ebar = r E + (r - 1)/2 I, with r = rho^(2/n) and rho = theta/J.
-//! The changes of the products in Ebar between two configurations are exact with mean quantities:
+//! The volume ratio is theta = sum psi_k int psi_k J dOmega/V, with orthogonal functions psi_k whose squares have the
+//! volume V of the element as integral. The strain of the material is Ebar = r E + (r - 1)/2 I, with r = rho^(2/n) and
+//! rho = theta/J. The changes of the products in Ebar between two configurations are exact with mean quantities:
 //!
 //! ```text
 //! dEbar = r_m dE + C_m/2 dr,  dr = g drho,  drho = (J_m dtheta - theta_m dJ)/(J0 J1),  dJ = K : dE
@@ -45,9 +45,9 @@ pub struct Dilatation<const K: usize>;
 
 /// Functions of the volume ratio for the elements of a block.
 pub struct VolumeFunctions<const K: usize, const P: usize> {
-    /// psi_k at every point; the first is 1.
+    /// Functions psi_k at every point; psi_1 is 1.
     values: [[Lanes; K]; P],
-    /// psi_k times the weight of the point, divided by the volume of the element.
+    /// Functions psi_k times the weight of the point, divided by the volume of the element.
     weighted: [[Lanes; K]; P],
 }
 
@@ -57,27 +57,28 @@ pub struct VolumeFunctions<const K: usize, const P: usize> {
 struct DilatedPoint {
     /// Displacement gradient of the mid configuration.
     gradient: Gradient,
-    /// Green-Lagrange strains of the displacements at start and end; later those of the material.
+    /// Green-Lagrange strains of the displacements at start and end; after [`Self::take_volume`] the strains of the
+    /// material.
     strains: [SymmetricLanes; 2],
-    /// J - 1 at start and end.
+    /// Change of volume J - 1 at start and end.
     dilatation: [Lanes; 2],
     /// Volume ratio theta at the end.
     theta: Lanes,
-    /// C_m/2: half the mean of the right Cauchy-Green tensors.
+    /// Tensor C_m/2: half the mean of the right Cauchy-Green tensors at start and end.
     half_c: SymmetricLanes,
-    /// K, which satisfies J1 - J0 = K : (E1 - E0), eq. (2.46).
+    /// Tensor K, which satisfies J1 - J0 = K : (E1 - E0), eq. (2.46).
     k: SymmetricLanes,
     /// Stress that does work on the strain of the material.
     s: SymmetricLanes,
-    /// Mean of r.
+    /// Mean of the factor r at start and end.
     ratio: Lanes,
-    /// g, and the second derivative of r with respect to rho.
+    /// The factor g, and the second derivative of r with respect to rho.
     slopes: [Lanes; 2],
-    /// Mean of J divided by J0 J1.
+    /// Mean of J at start and end, divided by J0 J1.
     inverse_j: Lanes,
-    /// Mean of theta divided by J0 J1.
+    /// Mean of theta at start and end, divided by J0 J1.
     theta_over_jj: Lanes,
-    /// A - a theta_m: factor of K in the stress that does work on the strain of the displacements.
+    /// Factor A - a theta_m of K in the stress that does work on the strain of the displacements.
     pressure: Lanes,
 }
 
@@ -114,7 +115,7 @@ impl<const K: usize, const P: usize> VolumeFunctions<K, P> {
         }
     }
 
-    /// The value sum psi_k f_k at a point.
+    /// The value at a point of the sum of psi_k f_k.
     #[inline(always)]
     fn at(&self, p: usize, of_functions: &[Lanes; K]) -> Lanes {
         let mut sum = of_functions[0];
@@ -126,7 +127,8 @@ impl<const K: usize, const P: usize> VolumeFunctions<K, P> {
 }
 
 impl DilatedPoint {
-    /// Sets the strains of the motion from H of the mid configuration and half its change.
+    /// Sets the strains of the motion from the displacement gradient H of the mid configuration and half the change of
+    /// H.
     #[inline(always)]
     fn take_motion<const HOOP: bool>(&mut self, gradient: Gradient, half: &Gradient) {
         let back = Gradient {
@@ -167,7 +169,8 @@ impl DilatedPoint {
         }
     }
 
-    /// Sets the strain of the material, eq. (2.10), and the mean quantities; `theta` is theta - 1 at start and end.
+    /// Sets the strain of the material, eq. (2.10), and the mean quantities of the motion; `theta` holds theta - 1 at
+    /// start and end.
     #[inline(always)]
     fn take_volume<const HOOP: bool>(&mut self, theta: [Lanes; 2]) {
         let [j0, j1] = [self.dilatation[0] + 1.0, self.dilatation[1] + 1.0];
@@ -223,7 +226,7 @@ impl DilatedPoint {
         }
     }
 
-    /// g S : C_m/2, the derivative of the stored energy with respect to rho.
+    /// Derivative g S : C_m/2 of the stored energy with respect to rho.
     #[inline(always)]
     fn by_rho<const HOOP: bool>(&self) -> Lanes {
         let of_c = self.s.contract::<HOOP>(&self.half_c);
@@ -240,7 +243,8 @@ impl DilatedPoint {
     }
 }
 
-/// Motion and stresses of all points, with one evaluation of the material at each; det F is entered in `positive`.
+/// Motion and stresses of all points, with one evaluation of the material at each; the determinant det F is entered in
+/// `positive`.
 #[inline(always)]
 fn stresses<S, const K: usize, const N: usize, const P: usize, const HOOP: bool>(
     at: &MovedBlock<N, P, VolumeFunctions<K, P>>,
@@ -324,8 +328,8 @@ impl<const K: usize, const N: usize, const P: usize, const HOOP: bool> Formulati
     }
 
     /// Second derivative of the stored energy, eq. (2.12), in terms of B_L and Dtheta_k = int psi_k B_L^T K dOmega/V;
-    /// in the energy-momentum form with mean quantities. For each point, alpha = J_m/(J0 J1), beta = theta_m/(J0 J1),
-    /// h = C_m/2, y = C:h, kappa = g² h:C:h + r'' S:h,
+    /// in the energy-momentum form all quantities are means over the motion. For each point, alpha = J_m/(J0 J1), beta
+    /// = theta_m/(J0 J1), h = C_m/2, y = C:h, kappa = g² h:C:h + r'' S:h,
     ///
     /// ```text
     /// z = g (r y + S) - g (S:h) alpha K - beta kappa K/2

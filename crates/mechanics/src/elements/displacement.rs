@@ -9,7 +9,7 @@ use super::shapes::IntegratedShape;
 use crate::materials::number::Positive;
 use crate::materials::{AnyLaw, Lanes, StressAtPoints};
 
-/// Strains of the displacements, E = (F^T F - I)/2, with E_33 = h + h²/2 of h = u_r/R in a body of revolution, eq. (2.31).
+/// Strains of the displacements, E = (F^T F - I)/2, with E_33 = h + h²/2 for h = u_r/R in a body of revolution, eq. (2.31).
 pub struct Displacement;
 
 impl<const N: usize, const P: usize, const HOOP: bool> Formulation<N, P, HOOP> for Displacement {
@@ -38,11 +38,11 @@ impl<const N: usize, const P: usize, const HOOP: bool> Formulation<N, P, HOOP> f
         positive
     }
 
-    /// K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6) (paper eq. 12); in a body of revolution B_L has the row
-    /// (1 + h) h_a/R, and S_33 h_a h_b/R² is added, eq. (2.34).
+    /// The tangent is K = int B_L^T C B_L + B_NL^T S B_NL dOmega, eq. (2.6) (paper eq. 12). In a body of revolution B_L
+    /// has the row (1 + h) h_a/R, and S_33 h_a h_b/R² is added, eq. (2.34).
     ///
-    /// In the energy-momentum form, B_L on both sides is that of the mid configuration, S is the energy-momentum
-    /// stress, and C is the symmetric part of its own tangent. Up to the factor theta2 = 1/2 the matrix K is a
+    /// In the energy-momentum form, B_L on both sides belongs to the mid configuration, S is the energy-momentum
+    /// stress, and C is the symmetric part of the tangent of S. Up to the factor theta2 = 1/2 the matrix K is a
     /// symmetric approximation of the exact tangent, which has B_L of the end on the right.
     ///
     /// With A = dP/dF, the derivative of the first Piola-Kirchhoff stress, K_ab = dh_a/dX . A . dh_b/dX.

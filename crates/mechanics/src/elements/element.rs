@@ -28,7 +28,7 @@ pub(super) fn points(element_type: ElementType) -> usize {
 }
 
 /// Indices of elements of one type and section of a model, and their law. The internal variables of the chunk start at
-/// `first_variable` among those of all elements.
+/// `first_variable` among the variables of all elements.
 pub(super) struct ChunkParts<'a> {
     pub model: &'a Model,
     pub elements: &'a [usize],
@@ -36,7 +36,7 @@ pub(super) struct ChunkParts<'a> {
     pub first_variable: usize,
 }
 
-/// A chunk of elements; their formulation is chosen here, once for all of them.
+/// A chunk of elements; the function chooses their formulation once for the whole chunk.
 pub(super) fn new_chunk(parts: ChunkParts) -> Box<dyn Chunk> {
     use model::Formulation as Type;
     let element_type = parts.model.mesh.elements[parts.elements[0]].element_type;
@@ -67,7 +67,7 @@ pub(super) fn new_chunk(parts: ChunkParts) -> Box<dyn Chunk> {
 }
 
 impl ChunkParts<'_> {
-    /// A chunk with a formulation of the plane, or one of bodies of revolution.
+    /// A chunk with a formulation of the plane or of bodies of revolution.
     fn chunk<S, F, G, const N: usize, const P: usize>(self) -> Box<dyn Chunk>
     where
         S: IntegratedShape<N, P> + Send + Sync + 'static,
@@ -121,7 +121,7 @@ fn first<const N: usize>(nodes: &[usize]) -> [usize; N] {
     std::array::from_fn(|a| nodes[a])
 }
 
-/// Coordinates of the nodes of an element, column a for node a.
+/// Coordinates of the nodes of an element; column a belongs to node a.
 fn positions<const N: usize>(nodes: &[usize], x: &[[f64; 2]]) -> SMatrix<f64, 2, N> {
     SMatrix::from_fn(|i, a| x[nodes[a]][i])
 }

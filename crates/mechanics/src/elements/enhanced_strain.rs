@@ -1,13 +1,13 @@
 //! Enhanced strains of the four-node quadrilateral (CPE4I, CPS4I; Simo & Rifai 1990) and of the ring with its section
-//! (CAX4I), which bend without locking. The element adds four own strains to those of the displacements, and in a ring
-//! a fifth around the axis; they minimise its stored energy. Own strains are not part of the state: Newton's method in
-//! the element, eq. (2.28), computes them from the displacements, starting with those of the last increment. See
-//! docs/theory/elements.md.
+//! (CAX4I), which bend without locking. The element adds four own strains to the strains of the displacements, and in a
+//! ring a fifth own strain around the axis. The own strains minimise the stored energy of the element. Own strains are
+//! not part of the state: Newton's method in the element, eq. (2.28), computes them from the displacements, starting
+//! with the own strains of the last increment. See docs/theory/elements.md.
 //!
 //! # Derivation
 //!
 //! Let Phi(E) be a potential of the displacement strains of all points, minimised over all local variables. Like a
-//! stored energy it has a discrete gradient (eq. 4.8), with sums over the element in place of one point:
+//! stored energy the potential Phi has a discrete gradient (eq. 4.8), with sums over the element in place of one point:
 //!
 //! ```text
 //! S_g = S_g(E_m) + f/(sum v dE:dE) dE_g,   f = Phi(E1) - Phi(E0) - sum v S(E_m):dE
@@ -16,8 +16,8 @@
 //! Here S does work on the displacement strains E, whereas the stress of the material does work on its own strain E_g
 //! (eq. 2.28).
 //!
-//! E is quadratic in the displacements, so exactly B(U_m) d = dE and d.F = Phi(E1) - Phi(E0). Since Phi is a minimum in
-//! alpha, only the square of an error of the local solution enters f.
+//! The strain E is quadratic in the displacements, so B(U_m) d = dE and d.F = Phi(E1) - Phi(E0) hold exactly. Since Phi
+//! is a minimum over the local variables alpha, only the square of an error of the local solution enters the factor f.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -36,11 +36,10 @@ use super::stretch::{AddedStrain, MeanStrain, Tensor, Variation};
 use crate::materials::number::{LANES, Positive};
 use crate::materials::{AnyLaw, Lanes, LawInLanes, Number, Strains, StressAtPoints, Tangent};
 
-/// Formulation with the strains of the displacements and A own strains: four, in a body of
-/// revolution five.
+/// Formulation with the strains of the displacements and A own strains: four, or five in a body of revolution.
 pub struct EnhancedStrain<const A: usize>;
 
-/// Number of nodes of the quadrilateral, and of its points; each point is next to a node.
+/// Number of nodes of the quadrilateral, and of its integration points; each point is next to a node.
 const N: usize = 4;
 
 /// The pattern (1, -1, 1, -1) of the nodes.
@@ -50,9 +49,9 @@ pub fn alternating(a: usize) -> f64 {
 
 /// Hourglass pattern and own strains of elements, in the reference configuration.
 pub struct Modes<const A: usize> {
-    /// gamma of eq. (2.26), with q = sum gamma_a u_a.
+    /// Hourglass pattern gamma of eq. (2.26), with which q = sum gamma_a u_a.
     pub gamma: [Lanes; N],
-    /// grad h of h = r s at every point (1/length).
+    /// Gradient grad h of the function h = r s at every point (1/length).
     pub slope: [[Lanes; 2]; N],
     /// The own strains M at every point.
     strains: [[SymmetricLanes; A]; N],
@@ -145,8 +144,8 @@ impl<const A: usize> Modes<A> {
         strain
     }
 
-    /// Stiffness Kh of the amplitudes y for a tangent C, minimised over alpha: K_yy - K_ya K_aa^-1 K_ay, eq. (2.42);
-    /// `columns` gives the strain at a point for each amplitude.
+    /// Stiffness Kh of the amplitudes y for a tangent C, minimised over the own strains alpha: K_yy - K_ya K_aa^-1
+    /// K_ay, eq. (2.42); `columns` gives the strain at a point for each amplitude.
     pub fn condensed<const M: usize>(
         &self,
         c: &Tangent,
@@ -190,7 +189,7 @@ const ALL: Wanted = [true; LANES];
 /// Number of own strains of the element in the plane.
 const PLANE_STRAINS: usize = 4;
 
-/// q = sum gamma_a u_a, eq. (2.26), for displacements u of the nodes (length).
+/// Hourglass displacement q = sum gamma_a u_a, eq. (2.26), for displacements u of the nodes (length).
 #[inline(always)]
 pub fn hourglass(gamma: &[Lanes; N], u: &NodalLanes<N>) -> [Lanes; 2] {
     from_fn(|i| dot(&u[i], gamma))
@@ -216,15 +215,16 @@ struct Measured {
     mean: MeanStrain,
 }
 
-/// Strains of the displacements, eq. (2.27), at the start, in the mid configuration and at the end of a motion, and
-/// their change, which keeps its own digits. For a single configuration all three strains are the same.
+/// Strains of the displacements, eq. (2.27), at the start, in the mid configuration and at the end of a motion, and the
+/// change of the strains, computed without the round-off of a difference. For a single configuration the strains at
+/// start, middle and end are the same.
 struct Compatible {
     start: [SymmetricLanes; N],
     halfway: [SymmetricLanes; N],
     end: [SymmetricLanes; N],
     change: [SymmetricLanes; N],
     gradients: [Gradient; N],
-    /// q in the mid configuration (length).
+    /// Hourglass displacement q in the mid configuration (length).
     q: [Lanes; 2],
     positive: Positive,
 }
@@ -300,7 +300,8 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         })
     }
 
-    /// Derivatives of the energy with respect to alpha, sum v M:T and `factor` times K_aa, at strains of the material.
+    /// Derivatives of the energy with respect to alpha, the first derivative sum v M:T and `factor` times the second
+    /// derivative K_aa, at strains of the material.
     fn derivatives(
         &self,
         enhanced: &[AddedStrain; N],
@@ -329,8 +330,8 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         (slope, stiffness)
     }
 
-    /// The material at a point, multiplied by its weight; the tangent is also multiplied by
-    /// `factor`.
+    /// Stress and tangent of the material at a point, multiplied by the weight of the point; the tangent is also
+    /// multiplied by `factor`.
     #[inline(always)]
     fn point<'c>(
         &self,
@@ -350,8 +351,8 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         }
     }
 
-    /// The alpha that minimises the energy at strains of the displacements, eq. (2.28); the search starts at `first`.
-    /// The alpha is NaN if the local solution does not converge.
+    /// The own strains alpha that minimise the energy at strains of the displacements, eq. (2.28); the search starts at
+    /// `first`. The own strains alpha are NaN if the local solution does not converge.
     fn least(&self, measured: &Measured, first: &Alpha<A>) -> Alpha<A> {
         let last = largest(&measured.compatible) * LAST_STEP + f64::EPSILON;
         let derivatives = |alpha: &Alpha<A>, wanted: Wanted| {
@@ -366,8 +367,9 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         least(*first, derivatives, change, last)
     }
 
-    /// The alpha at the end of an increment for which viscous stresses do no work on the element's own strains, from
-    /// the strains of the displacements at start and end. The alpha is NaN if Newton's method does not converge.
+    /// The own strains alpha at the end of an increment for which viscous stresses do no work on these own strains,
+    /// from the strains of the displacements at start and end. The own strains alpha are NaN if Newton's method does
+    /// not converge.
     fn of_rates(&self, compatible: &Compatible, end: &Measured) -> Alpha<A> {
         let last = largest(&compatible.change) * LAST_STEP
             + largest(&compatible.end) * f64::EPSILON
@@ -381,16 +383,16 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         zero(derivatives, last)
     }
 
-    /// alpha of the last committed increment, at which the search for the next one starts: the energy may have several
-    /// minima, and the element follows one of them.
+    /// Own strains alpha of the last committed increment, at which the next search starts: the energy may have several
+    /// minima, and the element follows one minimum.
     fn committed(&self) -> Alpha<A> {
         let of = |k: usize, lane: usize| self.at.own_variables[lane].get(k).copied();
         from_fn(|k| Lanes::of_lanes(|lane| of(k, lane).unwrap_or_default()))
     }
 
-    /// Change of energy sum v (W(E1) - W(E0)) between two strains with their alpha, whose displacement strains differ
-    /// by `changes`. The round-off of this change of energy is relative to `changes`, whereas the difference of the two
-    /// strains has the round-off of the strains.
+    /// Change of energy sum v (W(E1) - W(E0)) between two strains with their own strains alpha, whose displacement
+    /// strains differ by `changes`. The round-off of this change of energy is relative to `changes`, whereas the
+    /// difference of the two strains has the round-off of the strains.
     fn energy_change(
         &self,
         [(start, alpha0), (end, alpha1)]: [(&Measured, &Alpha<A>); 2],
@@ -420,8 +422,7 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         sum::<N>(|p| self.law.energy_at(p, &e[p].strain::<HOOP>()) * self.at.block.volume[p])
     }
 
-    /// Strains and stresses of all points; between two configurations the stresses are those of eq.
-    /// (2.29).
+    /// Strains and stresses of all points; between two configurations eq. (2.29) gives the stresses.
     fn states<S: IntegratedShape<N, N>>(&self) -> States<A> {
         let compatible = Compatible::new::<S, A, HOOP>(self.at);
         let first = self.committed();
@@ -487,8 +488,8 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
         }
     }
 
-    /// Changes the stresses into S + f/(sum v dE:dE) dE, f = work - sum v S:dE, eq. (2.29), which do the given work in
-    /// an increment.
+    /// Changes the stresses S into S + f/(sum v dE:dE) dE with f = work - sum v S:dE, eq. (2.29), which do the given
+    /// work in an increment.
     fn do_work(&self, work: Lanes, changes: &[SymmetricLanes; N], s: &mut [SymmetricLanes; N]) {
         let weights = &self.at.block.volume;
         let of = |stress: &[SymmetricLanes; N]| {
@@ -509,8 +510,8 @@ impl<const A: usize, const HOOP: bool, L: StressAtPoints<Lanes, HOOP> + ?Sized>
     }
 }
 
-/// Strains of the displacements, each with the alpha that minimises the energy: at the start (only between two
-/// configurations) and at the end.
+/// Strains of the displacements, each with the own strains alpha that minimise the energy: at the start (only between
+/// two configurations) and at the end.
 type Solutions<const A: usize> = (Option<(Measured, Alpha<A>)>, (Measured, Alpha<A>));
 
 /// Strains and stresses of a motion at all points.
@@ -559,16 +560,17 @@ struct PointMaterial<'a, const HOOP: bool> {
     c: TangentLanes,
 }
 
-/// Change of the material's strain at a point by one displacement of the element or by one alpha.
+/// Change of the material's strain at a point by one displacement of the element or by one own strain alpha.
 struct Column {
     /// dE_g
     first: SymmetricLanes,
-    /// Tensor B of the change in the second derivative S : d²E_g.
+    /// Tensor B by which the change enters the second derivative S : d²E_g.
     second: Tensor,
 }
 
 impl Column {
-    /// dE_g C dE_g + S : d²E_g for two changes of the strain, one of them given by its stresses.
+    /// The second derivative dE_g C dE_g + S : d²E_g for two changes of the strain; one of the changes is given by its
+    /// stresses.
     #[inline(always)]
     fn product<const HOOP: bool>(
         &self,
@@ -583,8 +585,8 @@ impl Column {
 }
 
 impl<const HOOP: bool> PointMaterial<'_, HOOP> {
-    /// Change of the material's strain for a change `at_point` of E + M alpha at the point and a
-    /// change `of_mean` of the mean.
+    /// Change of the material's strain for a change `at_point` of E + M alpha at the point and a change `of_mean` of
+    /// the mean strain.
     #[inline(always)]
     fn column(&self, at_point: SymmetricLanes, of_mean: SymmetricLanes) -> Column {
         let variation = Variation { at_point, of_mean };
@@ -592,14 +594,14 @@ impl<const HOOP: bool> PointMaterial<'_, HOOP> {
         Column { first, second }
     }
 
-    /// Changes of the material's strain by each alpha.
+    /// Changes of the material's strain by each own strain alpha.
     #[inline(always)]
     fn own_columns<const A: usize>(&self, modes: &Modes<A>) -> [Column; A] {
         let of = |k: usize| modes.strains[self.number][k];
         from_fn(|k| self.column(of(k), SymmetricLanes::zeros()))
     }
 
-    /// The stress C dE_g of a change, and the stress that acts on its tensor B.
+    /// The stress C dE_g of a change of the strain, and the stress that acts on the tensor B of the change.
     #[inline(always)]
     fn stress(&self, column: &Column) -> (SymmetricLanes, Option<Tensor>) {
         (
@@ -636,8 +638,8 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
         states.positive
     }
 
-    /// sum v (F S grad h_a - (grad h . S grad h) gamma_a q): the strain of eq. (2.27) does not
-    /// contain |q|^2.
+    /// Force sum v (F S grad h_a - (grad h.S grad h) gamma_a q) at node a: the strain of eq. (2.27) does not contain
+    /// |q|^2.
     #[inline(always)]
     fn force<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
@@ -660,7 +662,7 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
         (force, states.positive)
     }
 
-    /// K = K_uu - K_ua K_aa^-1 K_au, eq. (2.30); in the energy-momentum form at E_m.
+    /// The tangent K = K_uu - K_ua K_aa^-1 K_au, eq. (2.30); in the energy-momentum form at the strain E_m.
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
@@ -746,8 +748,8 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
         }
     }
 
-    /// The reported stresses are those of the material, not those that do work on the strains of
-    /// the displacements.
+    /// The reported stresses are the stresses of the material, not the stresses that do work on the strains of the
+    /// displacements.
     #[inline(always)]
     fn results<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
@@ -777,9 +779,9 @@ impl<const A: usize, const HOOP: bool> Formulation<N, N, HOOP> for EnhancedStrai
             .work::<HOOP>(&at.block.volume)
     }
 
-    /// The element stores alpha: the one at the end with the new variables, or the one with the old variables if the
-    /// former is not found. If a point has flowed, D is the change of Phi beyond the stored energy: the dissipation of
-    /// the points alone would have an error of first order in alpha.
+    /// The element stores its own strains alpha at the end: with the new variables or, if these alpha are not found,
+    /// with the old variables. If a point has flowed, the dissipated energy D is the change of Phi beyond the change of
+    /// the stored energy. The dissipation of the points alone would have an error of first order in alpha.
     fn update<'z, S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, Modes<A>>,
         law: &AnyLaw<HOOP>,

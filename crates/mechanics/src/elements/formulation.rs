@@ -12,7 +12,7 @@ use crate::materials::{AnyLaw, Lanes, LawInLanes, Number, Strains, StressAtPoint
 
 /// Deformation and stress at an integration point.
 pub struct PointState<'a> {
-    /// Displacement gradient in the strain-displacement matrix; in the energy-momentum form that of the mid
+    /// Displacement gradient in the strain-displacement matrix; in the energy-momentum form the gradient of the mid
     /// configuration.
     pub gradient: &'a Gradient,
     /// Strains of the material.
@@ -28,8 +28,8 @@ impl PointState<'_> {
         ResultPoint::new(*self.gradient, self.strains.end(), self.s, weight)
     }
 
-    /// Writes the internal variables of a point at the end of its strains, and returns the energy dissipated on the way
-    /// (force/length^2).
+    /// Writes the internal variables of a point at the end of an increment of its strains, and returns the energy
+    /// dissipated in the increment (force/length^2).
     pub fn update<const HOOP: bool>(
         &self,
         p: usize,
@@ -44,7 +44,7 @@ impl PointState<'_> {
 pub struct PlacedBlock<'a, const N: usize, const P: usize> {
     /// The elements.
     pub block: &'a ElementBlock<N, P>,
-    /// 1/R at the points: zero in plane strain and in plane stress (1/length).
+    /// Inverse radius 1/R at the points (1/length): zero in plane strain and in plane stress.
     pub over_radius: &'a [Lanes; P],
     /// Places of the integration points (length).
     pub places: &'a [[Lanes; 2]; P],
@@ -63,17 +63,18 @@ pub type BlockVariables = [Vec<f64>; LANES];
 pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     Send + Sync + 'static
 {
-    /// Reference data of elements other than their points.
+    /// Reference data of elements, except the data of their points.
     type Reference: Send + Sync;
 
     /// Whether the force is compiled separately for each law with formulas for several elements at a time. A separate
-    /// compilation pays if a call of the law takes a large part of the time.
+    /// compilation is worth its cost if a call of the law needs a large part of the time.
     const FOR_EACH_LAW: bool = false;
 
     /// Number of points at which the stress of the material is evaluated.
     const POINTS: usize = P;
 
-    /// Number of variables of an element other than those of its points, for a metal or another material.
+    /// Number of variables of an element itself, in addition to the variables of its points, for a metal or for another
+    /// material.
     fn own_variables(_is_metal: bool) -> usize {
         0
     }
@@ -82,7 +83,7 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
     fn reference<S: IntegratedShape<N, P>>(placed: &PlacedBlock<N, P>) -> Self::Reference;
 
     /// Visits every point p with its deformation and stress. The visit is the only evaluation of the material;
-    /// everything else is computed from it. Returns whether det F is positive at all points.
+    /// all other quantities are computed from the visited states. Returns whether det F is positive at all points.
     fn for_each_state<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
         law: &(impl StressAtPoints<Lanes, HOOP> + ?Sized),
@@ -111,7 +112,7 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
         k: &mut MatrixLanes<N>,
     );
 
-    /// Data for the results of the first [`Self::POINTS`] points at displacements.
+    /// Data for the results of the first [`Self::POINTS`] points at the displacements of the block.
     #[inline(always)]
     fn results<S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
@@ -124,7 +125,7 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
         points
     }
 
-    /// Stored energy of the hourglass modes at displacements (force length).
+    /// Stored energy of the hourglass modes at the displacements of the block (force length).
     #[inline(always)]
     fn hourglass_energy<S: IntegratedShape<N, P>>(
         _at: &MovedBlock<N, P, Self::Reference>,
@@ -149,8 +150,8 @@ pub trait Formulation<const N: usize, const P: usize, const HOOP: bool>:
         work
     }
 
-    /// Writes the internal variables of the points and of the elements at the end of a motion. Returns the energy
-    /// dissipated on the way, int D dOmega (force length). `of_variables` gives the law with variables of the points.
+    /// Writes the internal variables of the points and of the elements at the end of a motion. Returns the energy int D
+    /// dOmega dissipated in the motion (force length). `of_variables` gives the law for given variables of the points.
     fn update<'z, S: IntegratedShape<N, P>>(
         at: &MovedBlock<N, P, Self::Reference>,
         law: &AnyLaw<HOOP>,

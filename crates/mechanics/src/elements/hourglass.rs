@@ -4,17 +4,18 @@
 //!
 //! # Derivation
 //!
-//! The element flows when the root mean square of q over the element reaches the yield stress. The energy of the modes
-//! counts as distortional energy, q²/(6 mu). Strain and modes then form one strain with more components, with one
-//! radial return:
+//! The element flows when the root mean square of the von Mises stress q over the element reaches the yield stress. The
+//! energy of the modes counts as distortional energy, q²/(6 mu). Strain and modes then form one strain with more
+//! components, with one radial return:
 //!
 //! ```text
 //! q² = 3/2 xi:xi + m,   m = 3 mu/V x.Kh x,   x = y - (1 + k) y_p,   k = H_k/(3 mu)
 //! dE_p = r xi/(2 mu),   dy_p = r x,   r = 3 mu da/q,   q - (3 mu + H_k) da = sigma_y(a + da)
 //! ```
 //!
-//! Up to a constant, the minimum of the energy over the flow is V W(E; m) + (y - y_p).Kh (y - y_p)/2. The element knows
-//! the derivatives of W with respect to E and to m, and m is quadratic in y.
+//! Up to a constant, the minimum of the energy over the flow is V W(E; m) + (y - y_p).Kh (y - y_p)/2, with the
+//! amplitudes y, their plastic part y_p and the stiffness Kh. The element knows the derivatives of W with respect to E
+//! and to m, and m is quadratic in y.
 
 use std::array::from_fn;
 
@@ -38,11 +39,11 @@ pub enum Amplitudes<const M: usize> {
 /// Stiffness Kh of the modes (energy divided by the square of the amplitudes).
 pub type ModeStiffness<const M: usize> = [[Lanes; M]; M];
 
-/// The elastic potential of the modes, (y - y_p).Kh (y - y_p)/2 + k y_p.Kh y_p/2.
+/// The elastic potential (y - y_p).Kh (y - y_p)/2 + k y_p.Kh y_p/2 of the modes with the amplitudes y.
 pub struct HourglassPotential<const M: usize> {
     /// Kh
     pub stiffness: ModeStiffness<M>,
-    /// y_p, the plastic part of the amplitudes.
+    /// Plastic part y_p of the amplitudes.
     flown: [Lanes; M],
     /// Factor k = H_k/(3 mu) of kinematic hardening.
     kinematic: Lanes,
@@ -58,7 +59,7 @@ impl<const M: usize> Amplitudes<M> {
 }
 
 impl<const M: usize> HourglassPotential<M> {
-    /// Potential with a stiffness Kh, for metals with their y_p.
+    /// Potential with a stiffness Kh; for metals the potential has the plastic amplitudes y_p.
     pub fn new(
         stiffness: ModeStiffness<M>,
         metals: &[Option<Metal>; LANES],
@@ -111,12 +112,12 @@ fn tensor(e: &Vector4<f64>) -> Symmetric {
     Symmetric::new(e.x, e.y, e.z, e.w / 2.0)
 }
 
-/// Strain (11, 22, 33, 2*12) and amplitudes of the modes, or the forces that do work on them.
+/// Strain (11, 22, 33, 2*12) and amplitudes of the modes, or the forces that do work on strain and amplitudes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Joint<const M: usize> {
-    /// The strain, or the force that does work on it.
+    /// The strain, or the force that does work on the strain.
     pub e: Vector4<f64>,
-    /// The amplitudes of the modes, or the forces that do work on them.
+    /// The amplitudes of the modes, or the forces that do work on the amplitudes.
     pub y: SVector<f64, M>,
 }
 
@@ -136,11 +137,11 @@ impl<const M: usize> Joint<M> {
 /// Second derivatives with respect to strain and amplitudes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct JointTangent<const M: usize> {
-    /// Derivative with respect to the strain twice.
+    /// Second derivative with respect to the strain.
     pub ee: Matrix4<f64>,
-    /// Derivative with respect to the strain and the amplitudes.
+    /// Mixed second derivative with respect to the strain and the amplitudes.
     pub ey: SMatrix<f64, 4, M>,
-    /// Derivative with respect to the amplitudes twice.
+    /// Second derivative with respect to the amplitudes.
     pub yy: SMatrix<f64, M, M>,
 }
 
@@ -152,7 +153,7 @@ impl<const M: usize> JointTangent<M> {
         }
     }
 
-    /// Adds `factor` times (a b + b a)/2.
+    /// Adds `factor` times the symmetric product (a b + b a)/2.
     fn add_product(&mut self, a: &Joint<M>, b: &Joint<M>, factor: f64) {
         let half = factor / 2.0;
         self.ee += (a.e * b.e.transpose() + b.e * a.e.transpose()) * half;
@@ -218,12 +219,12 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         self.metal.law.moduli()[0]
     }
 
-    /// Amplitudes x = y - (1 + k) y_p.
+    /// Amplitudes x = y - (1 + k) y_p, measured from the back stress.
     fn relative(&self, y: &SVector<f64, M>) -> SVector<f64, M> {
         y - self.flown * (1.0 + self.kinematic)
     }
 
-    /// m, and half of its derivative with respect to y, 3 mu/V Kh x.
+    /// The square m of the modes, and half the derivative 3 mu/V Kh x of m with respect to the amplitudes y.
     fn square(&self, y: &SVector<f64, M>) -> (f64, SVector<f64, M>) {
         let x = self.relative(y);
         let half = self.stiffness * x * (self.shear() / self.volume);
@@ -274,14 +275,13 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         }
     }
 
-    /// Whether a motion is too small for a correction; `size` is the bound relative to strains
-    /// of 1.
+    /// Whether a motion is too small for a correction; `size` is the bound, relative to a strain of 1.
     fn is_small(&self, squared: f64, size: f64) -> bool {
         squared <= size * size * self.volume * self.shear()
     }
 
-    /// V S, and the part of D that is added to the stress of the modes. Both stresses are the derivative of the
-    /// potential D, or its discrete gradient: with n between start and end and its metric m,
+    /// The stress V S, and the stress from the potential D that is added to the stress of the modes. Both stresses are
+    /// the derivative of the potential D, or the discrete gradient of D: with n between start and end and its metric m,
     ///
     /// ```text
     /// D'(mean) + phi/(n.m) m,   phi = D(end) - D(start) - D'(mean).n
@@ -336,14 +336,14 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         tangent
     }
 
-    /// The squares m at the start and at the end.
+    /// The squares m of the modes at the start and at the end.
     pub fn squares(&self, path: &JointPath<M>) -> [f64; 2] {
         let (JointPath::At(end) | JointPath::Between(_, end)) = path;
         let (JointPath::At(start) | JointPath::Between(start, _)) = path;
         [start, end].map(|at| self.square(&at.y).0)
     }
 
-    /// Writes y_p at the end of an increment in which the given part of the trial strain flows.
+    /// Writes the plastic amplitudes y_p at the end of an increment in which the given part of the trial strain flows.
     pub fn update(&self, path: &JointPath<M>, part: f64, updated: &mut [f64]) {
         let (JointPath::At(end) | JointPath::Between(_, end)) = path;
         let flown = self.flown + self.relative(&end.y) * part;
@@ -354,11 +354,11 @@ impl<'a, const M: usize> BentMetal<'a, M> {
 /// Second derivatives with respect to strain (11, 22, 33, 2*12) and amplitudes, for the elements of
 /// a block.
 pub struct BlockTangent<const M: usize> {
-    /// Derivative with respect to the strain twice.
+    /// Second derivative with respect to the strain.
     pub ee: TangentLanes,
-    /// Derivative with respect to the strain and the amplitudes.
+    /// Mixed second derivative with respect to the strain and the amplitudes.
     pub ey: [[Lanes; M]; 4],
-    /// Derivative with respect to the amplitudes twice.
+    /// Second derivative with respect to the amplitudes.
     pub yy: ModeStiffness<M>,
 }
 
@@ -366,7 +366,7 @@ pub struct BlockTangent<const M: usize> {
 pub struct ModesInMotion<'a, const M: usize> {
     potential: HourglassPotential<M>,
     metals: [Option<(BentMetal<'a, M>, JointPath<M>)>; LANES],
-    /// V S of metals (force length).
+    /// Stress times volume, V S, of metals (force length).
     pub metal_stress: Option<SymmetricLanes>,
     /// Stress that does work on the amplitudes.
     pub stress: [Lanes; M],
@@ -375,8 +375,8 @@ pub struct ModesInMotion<'a, const M: usize> {
 }
 
 impl<'a, const M: usize> ModesInMotion<'a, M> {
-    /// Modes with a potential, for elements with the given volume (length^3), and strains of their point at the start
-    /// and at the end.
+    /// Modes with a potential, for elements with the given volume (length^3) and with the given strains of their point
+    /// at the start and at the end.
     pub fn new(
         potential: HourglassPotential<M>,
         metals: [Option<Metal<'a>>; LANES],
@@ -416,8 +416,7 @@ impl<'a, const M: usize> ModesInMotion<'a, M> {
         &self.potential.stiffness
     }
 
-    /// The tangent of V S of metals, and of the part that their flow adds to the stress of the
-    /// modes.
+    /// For metals, the tangent of the stress V S and of the part that flow adds to the stress of the modes.
     pub fn metal_tangent(&self) -> Option<BlockTangent<M>> {
         self.metal_stress?;
         let of = |metal: &Option<(BentMetal<M>, _)>| {
@@ -434,13 +433,13 @@ impl<'a, const M: usize> ModesInMotion<'a, M> {
         })
     }
 
-    /// The metal of an element, and m of its modes at the start and at the end of the motion.
+    /// The metal of an element, and the square m of the modes at the start and at the end of the motion.
     pub fn metal(&self, lane: usize) -> Option<(Metal<'a>, [f64; 2])> {
         let metal = self.metals[lane].as_ref();
         metal.map(|(bent, path)| (bent.metal, bent.squares(path)))
     }
 
-    /// Writes the variables of the modes of an element if a part of the trial strain of a metal flows.
+    /// Writes the variables of the modes of an element in which a part of the metal's trial strain flows.
     pub fn update(&self, lane: usize, part: f64, updated: &mut [f64]) {
         if let Some((bent, path)) = &self.metals[lane] {
             bent.update(path, part, updated);
@@ -460,8 +459,9 @@ mod tests {
     const PLANE: Vector4<f64> = Vector4::new(2.0, -1.2, 0.0, 0.9);
     const BENT: Vector2<f64> = Vector2::new(0.03, -0.02);
 
-    /// States of strain and modes, approximately in units of the yield limit of each. The samples are: at rest; with
-    /// strain only, or almost; with modes only, or almost; with both; and far beyond the limit.
+    /// States of strain and modes, approximately in units of the yield limit for strain alone and for modes alone. The
+    /// samples are: at rest; with (almost) only strain; with (almost) only modes; with both; and far beyond the yield
+    /// limit.
     const SHARES: [[f64; 2]; 10] = [
         [0.0, 0.0],
         [0.5, 0.3],

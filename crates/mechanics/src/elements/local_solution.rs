@@ -12,12 +12,12 @@ use crate::materials::{Lanes, Number};
 
 /// Largest number of steps of the local solution, and of halvings of a step.
 const MOST_STEPS: usize = 60;
-/// Step, relative to the strains, at which the local solution ends: its square is round-off.
+/// Step, relative to the strains, at which the local solution ends: the square of this step is round-off.
 pub const LAST_STEP: f64 = 1e-8;
 /// Part of the slope by which a step must lower the energy.
 const DESCENT: f64 = 1e-4;
 
-/// For every element whether its solution is still sought; values of other elements are not read.
+/// For every element whether its solution is still sought; the values of solved elements are not read.
 pub type Wanted = [bool; LANES];
 /// The A strains of each element.
 pub type Alpha<const A: usize> = [Lanes; A];
@@ -81,7 +81,7 @@ pub fn least<const A: usize>(
     alpha
 }
 
-/// Like [`least`] if there is no energy: finds the values at which the slope is zero.
+/// Finds, as [`least`] does but without an energy, the values at which the slope is zero.
 pub fn zero<const A: usize>(
     derivatives: impl Fn(&Alpha<A>, Wanted) -> (Alpha<A>, Stiffness<A>),
     last: Lanes,
@@ -121,7 +121,7 @@ fn fail<const A: usize>(alpha: &mut Alpha<A>, is_open: &mut [bool; LANES], lane:
     }
 }
 
-/// Largest absolute value in one element; NaN if one value is NaN.
+/// Largest absolute value in one element; NaN if one of the values is NaN.
 fn largest<const A: usize>(values: &Alpha<A>, lane: usize) -> f64 {
     values
         .iter()
@@ -132,8 +132,8 @@ fn largest<const A: usize>(values: &Alpha<A>, lane: usize) -> f64 {
         })
 }
 
-/// K^-1 g; NaN for elements whose K is not positive definite. The factorisation K = L D L^T needs no roots, so units
-/// that differ by powers of two change no bit.
+/// The solution K^-1 g; NaN for elements whose matrix K is not positive definite. The factorisation K = L D L^T needs
+/// no roots, so the result has the same bits in units that differ by powers of two.
 fn positive<const A: usize>(k: &Stiffness<A>, g: &Alpha<A>) -> Alpha<A> {
     // the elimination leaves D L^T above the diagonal of `rows`
     let (mut rows, mut x) = (*k, *g);
@@ -160,7 +160,7 @@ fn positive<const A: usize>(k: &Stiffness<A>, g: &Alpha<A>) -> Alpha<A> {
     x
 }
 
-/// K^-1 times each of some columns; zero for elements whose K is singular.
+/// The products of K^-1 and some columns; zero for elements whose matrix K is singular.
 pub fn solved<const A: usize, const M: usize>(
     k: &Stiffness<A>,
     columns: &[Alpha<A>; M],
@@ -183,8 +183,8 @@ pub fn solved<const A: usize, const M: usize>(
     all
 }
 
-/// -|K|^-1 g, where |K| has the absolute eigenvalues of K. The result is NaN in the lane of an element for which no
-/// step exists, because an eigenvalue is zero or not finite.
+/// The step -|K|^-1 g, where |K| has the absolute eigenvalues of K. The result is NaN in the lane of an element for
+/// which no step exists, because an eigenvalue is zero or not finite.
 fn descent<const A: usize>(k: &Stiffness<A>, g: &Alpha<A>) -> Alpha<A> {
     let mut step = positive(k, g).map(|x| x * -1.0);
     for lane in 0..LANES {

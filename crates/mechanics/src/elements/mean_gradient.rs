@@ -19,7 +19,7 @@ pub struct MeanGradient {
 }
 
 impl MeanGradient {
-    /// Mean gradient of an element, from integrals over its sides, where n is the outward normal:
+    /// Mean gradient of an element, from integrals over its sides with the outward normal n:
     ///
     /// ```text
     /// 1/A int dh_a/dX dA = 1/A int h_a n dl,  A = int X n_x dl
@@ -45,8 +45,8 @@ impl MeanGradient {
         }
     }
 
-    /// Logarithmic strain of the mean displacement gradient at displacements `u`, 2 N entries (length), in the form of
-    /// `logarithmic_strain`.
+    /// Logarithmic strain of the mean displacement gradient at displacements `u`, 2 N entries (length), with the
+    /// components xx, yy, xy (tensor shear).
     pub fn logarithmic_strain(&self, u: &[f64]) -> [f64; 3] {
         let mut h = Matrix2::zeros();
         for (&node, w) in self.nodes.iter().zip(&self.weights) {
@@ -84,7 +84,7 @@ pub(super) fn logarithmic_strain(h: &Matrix2<f64>) -> [f64; 3] {
     ]
 }
 
-/// Logarithmic strain of a principal direction whose Green-Lagrange strain is `e`, ln(1 + 2 e)/2.
+/// Logarithmic strain ln(1 + 2 e)/2 of a principal direction whose Green-Lagrange strain is `e`.
 pub fn logarithmic_of(e: f64) -> f64 {
     (2.0 * e).ln_1p() / 2.0
 }

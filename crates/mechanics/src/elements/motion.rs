@@ -25,7 +25,8 @@ pub type Increment<'a> = [&'a [f64]; 2];
 /// internal variables of their materials.
 #[derive(Debug, Clone, Copy)]
 pub struct Motion<'a> {
-    /// Displacements at the start, in the energy-momentum form; without them forces are those at the end.
+    /// Displacements at the start, in the energy-momentum form; without these displacements, forces are the forces at
+    /// the end.
     pub start: Option<&'a [f64]>,
     /// Displacements at the end.
     pub end: &'a [f64],
@@ -33,8 +34,8 @@ pub struct Motion<'a> {
     pub committed: &'a [f64],
     /// The increment in which damping acts; `None` without damping.
     pub increment: Option<Increment<'a>>,
-    /// Temperature of every node at which the materials are evaluated; if the list is empty, it is the temperature at
-    /// the start of the analysis.
+    /// Temperature of every node at which the materials are evaluated; an empty list stands for the temperature at the
+    /// start of the analysis.
     pub temperature: &'a [f64],
 }
 
@@ -44,7 +45,7 @@ pub enum TangentPart {
     /// The complete tangents.
     Whole,
     /// The positive part of the tangents: negative eigenvalues of every element are replaced by
-    /// zero. No sum of positive parts is indefinite, whatever the stresses and the material.
+    /// zero. A sum of positive parts is never indefinite, for any stresses and any material.
     Positive,
 }
 
@@ -69,8 +70,8 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// Tolerance and largest number of iterations for the eigenvalues of an element, each of which
-/// converges in two or three iterations.
+/// Tolerance and largest number of iterations for the eigenvalues of an element; an eigenvalue converges in two or
+/// three iterations.
 const EIGENVALUES: (f64, usize) = (f64::EPSILON, 1000);
 
 /// Replaces a symmetric matrix of size `d` by K+ = sum max(lambda, 0) v v^T over its eigenpairs, eq. (4.14).

@@ -15,8 +15,8 @@ use crate::model::Shape;
 /// Results at one place: an integration point or a node.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LocalResult {
-    /// Stress, strain and energy at the place; the energy is per volume (force/length^2), without that of hourglass
-    /// modes.
+    /// Stress, strain and energy at the place; the energy is per volume (force/length^2), without the energy of
+    /// hourglass modes.
     pub result: ElementResult,
     /// Logarithmic strain xx, yy, xy (tensor shear) in the deformed configuration.
     pub logarithmic_strain: [f64; 3],
@@ -50,8 +50,8 @@ impl LocalResult {
 pub type LocalResults = SmallVec<[LocalResult; 9]>;
 
 impl Elements {
-    /// Results at the integration points of an element at the end of a motion, with the internal variables there; zero
-    /// for elements of rigid bodies.
+    /// Results at the integration points of an element at the end of a motion, with the internal variables at this end;
+    /// zero for elements of rigid bodies.
     pub fn at_points(&self, element: usize, motion: Motion) -> LocalResults {
         let Some((chunk, place)) = self.chunk_of(element) else {
             return SmallVec::from_elem(LocalResult::default(), self.points(element));
@@ -81,7 +81,7 @@ impl Elements {
 pub struct ElementNodes {
     /// Elements (indices).
     elements: Vec<usize>,
-    /// Indices of the nodes, increasing, each with the places of its values among those of all elements.
+    /// Indices of the nodes, increasing, each with the places of its values among the values of all elements.
     places: BTreeMap<usize, Vec<usize>>,
 }
 
@@ -105,7 +105,7 @@ impl ElementNodes {
     }
 
     /// Results at the nodes, one after the other: plain means over the elements at a node, which have positive weights
-    /// whatever the shape of the elements.
+    /// for elements of any shape.
     pub fn results(&self, all: &Elements, motion: Motion) -> Vec<LocalResult> {
         let of = |&element: &usize| all.at_nodes(element, motion);
         let own: Vec<LocalResult> = self.elements.iter().flat_map(of).collect();
@@ -117,15 +117,16 @@ impl ElementNodes {
     }
 }
 
-/// Share of a point in the value at a node. In quadrilaterals this share is, with sums over the
-/// points:
+/// Share of a point in the value at a node. In quadrilaterals the share of a point in the value at a node is, with sums
+/// over the points:
 ///
 /// ```text
 /// f(r, s) = sum_p f_p (1/P + r r_p/sum r² + s s_p/sum s² + r s r_p s_p/sum r² s²)
 /// ```
 ///
-/// With four points the field interpolates their values; with nine it is the nearest field. In triangles with three
-/// points the share is 2 L - 1/3 with L of the point's corner.
+/// With four points the field at the nodes interpolates the values at the points; with nine points it is the field
+/// nearest to these values. In triangles with three points the share of a point is 2 L - 1/3, where L is the area
+/// coordinate, at the node, of the point's corner.
 fn share(shape: Shape, points: usize, node: usize, point: usize) -> f64 {
     let corners = shape.topology().sides.len();
     if points == 1 {

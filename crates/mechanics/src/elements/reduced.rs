@@ -1,23 +1,24 @@
 //! The four-node quadrilateral with the one strain of its mean gradients (CPE4R, CPS4R), and the ring with this section
 //! (CAX4R). The hourglass modes of CPE4R, CPS4R and CAX4R have a potential. In a ring the variation of the strain
-//! around the axis has a potential too, since one layer of elements could otherwise tilt freely. See
+//! around the axis also has a potential, since one layer of elements could otherwise tilt freely. See
 //! docs/theory/elements.md, One strain and hourglass stiffness.
 //!
 //! # Derivation
 //!
-//! With u = sum u_a h_a, the mean gradients b, and the mean m of grad h over the volume, exactly F = F0 + q x (grad h -
-//! m), F0 = I + sum u_a x b_a, q = sum gamma_a u_a. At small strains the element with enhanced strains has, in addition
-//! to the mean strain, those of H = F0^T q and of E_33 less its mean. The energy products of these strains with the
-//! mean strain are zero. The potential is the energy of these strains with C of the law at E = 0, minimised over alpha:
+//! With u = sum u_a h_a, the mean gradients b, and the mean m of grad h over the volume, the deformation gradient is
+//! exactly F = F0 + q x (grad h - m), with F0 = I + sum u_a x b_a and q = sum gamma_a u_a. At small strains the element
+//! with enhanced strains has, in addition to the mean strain, the strains from H = F0^T q and from E_33 less its mean.
+//! The energy products of the hourglass strains with the mean strain are zero. The potential is the energy of the
+//! hourglass strains with the tangent C of the law at E = 0, minimised over the own strains alpha:
 //!
 //! ```text
 //! y = (H, E_33 - mean E_33 at the four points),   e = sym(H x (grad h - m)) + y_33 e_33 e_33 + M alpha
 //! Phi = V W(E0) + y.Kh y/2,   Kh = K_yy - K_ya K_aa^-1 K_ay
 //! ```
 //!
-//! The amplitudes y do not change when the element turns. The amplitudes are quadratic in the displacements, so exactly
-//! dy = (dy/du in the mid configuration) du between two configurations. The force with Kh (y0 + y1)/2 in the mid
-//! configuration therefore does the work of the hourglass energy.
+//! The amplitudes y do not change when the element turns. The amplitudes y are quadratic in the displacements u, so
+//! between two configurations their change is exactly dy = (dy/du in the mid configuration) du. The force with Kh (y0 +
+//! y1)/2 in the mid configuration therefore does work equal to the change of the hourglass energy.
 
 // Loops over points, nodes and directions: indices are those of the formulas.
 #![allow(clippy::needless_range_loop)]
@@ -36,11 +37,11 @@ use super::shapes::IntegratedShape;
 use crate::materials::number::{LANES, Positive};
 use crate::materials::{AnyLaw, Lanes, LawInLanes, Number, Strains, StressAtPoints, Tangent};
 
-/// Formulation with one strain and a potential of M modes: two in the plane, and in a ring four of E_33 in addition.
-/// The stiffness of the modes comes from A enhanced strains.
+/// Formulation with one strain and a potential of M modes: two modes in the plane, and in a ring four more from E_33.
+/// The stiffness of the modes is computed with A enhanced strains.
 pub struct ReducedIntegration<const M: usize, const A: usize>;
 
-/// Number of nodes of the quadrilateral, and of its points.
+/// Number of nodes of the quadrilateral; also the number of points at which its modes and det F are evaluated.
 const N: usize = 4;
 /// Number of hourglass modes in the plane.
 const PLANE_MODES: usize = 2;
@@ -49,9 +50,9 @@ const PLANE_MODES: usize = 2;
 pub struct OnePoint<const M: usize> {
     /// Mean gradients b (1/length).
     mean: [[Lanes; 2]; N],
-    /// Means of h_a/R (1/length).
+    /// Means of h_a/R over the element (1/length).
     around: [Lanes; N],
-    /// h_a/R at the four points, less the means.
+    /// Values h_a/R at the four points, less their means.
     around_at: [[Lanes; N]; N],
     /// The hourglass vector gamma of eq. (2.26).
     gamma: [Lanes; N],
@@ -68,10 +69,11 @@ pub struct OnePoint<const M: usize> {
 /// Elements with one point each and their modes, in a motion.
 struct Moved<'a, const M: usize> {
     deformation: Deformation,
-    /// Whether det F is positive, for the mean and at the four points.
+    /// Whether the determinant det F is positive, for the mean gradient and at the four points.
     positive: Positive,
     modes: ModesInMotion<'a, M>,
-    /// F0 and q at the displacements of the strain-displacement matrix.
+    /// Mean deformation gradient F0 and hourglass displacement q at the displacements of the strain-displacement
+    /// matrix.
     f: [[Lanes; 2]; 2],
     q: [Lanes; 2],
     /// Stretches around the axis at the four points, in the mid configuration.
@@ -128,7 +130,7 @@ impl<const M: usize> OnePoint<M> {
 }
 
 impl<'a, const M: usize> Moved<'a, M> {
-    /// The motion of the strain and of the amplitudes, eq. (2.44).
+    /// The changes of the strain and of the amplitudes in a motion, eq. (2.44).
     #[inline(always)]
     fn new<S: IntegratedShape<N, N>, const HOOP: bool>(
         at: &MovedBlock<N, N, OnePoint<M>>,
@@ -226,8 +228,8 @@ impl<'a, const M: usize> Moved<'a, M> {
         }
     }
 
-    /// Derivatives dy by displacement i of node a: b_a q_i + F0^T e_i gamma_a, and (1 + h) h_a/R
-    /// less its mean.
+    /// Derivatives dy of the amplitudes with respect to displacement i of node a: b_a q_i + F0^T e_i gamma_a, and (1 +
+    /// h) h_a/R less its mean.
     #[inline(always)]
     fn row(&self, one: &OnePoint<M>, a: usize, i: usize) -> [Lanes; M] {
         let around = |p: usize| self.stretches[p] * (one.around_at[p][a] + one.around[a]);
@@ -280,7 +282,7 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
         moved.positive
     }
 
-    /// V F0 S b_a + dy.f, eq. (2.43); det F at the points is checked too.
+    /// Force V F0 S b_a + dy.f at node a, eq. (2.43), and whether det F is positive at all points.
     #[inline(always)]
     fn force<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,
@@ -306,9 +308,9 @@ impl<const M: usize, const A: usize, const HOOP: bool> Formulation<N, N, HOOP>
         (force, moved.positive)
     }
 
-    /// K = V B^T C B + int B_NL^T S B_NL + G^T Kh G + f.D²y, where G has the rows dy. D²H_k = b_ak gamma_b + gamma_a
-    /// b_bk acts in both directions, and D²E_33 = h_a h_b/R² along the radius. In a metal C and Kh come from one
-    /// potential, with its mixed derivatives.
+    /// The tangent is K = V B^T C B + int B_NL^T S B_NL + G^T Kh G + f.D²y, where G has the derivatives dy as rows. The
+    /// second derivative D²H_k = b_ak gamma_b + gamma_a b_bk acts in both directions, and D²E_33 = h_a h_b/R² acts
+    /// along the radius. In a metal C and Kh come from one potential, whose mixed derivatives are also added.
     #[inline(always)]
     fn add_tangent<S: IntegratedShape<N, N>>(
         at: &MovedBlock<N, N, OnePoint<M>>,

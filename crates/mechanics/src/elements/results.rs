@@ -20,9 +20,9 @@ pub struct ElementResult {
     /// Green-Lagrange strain xx, yy, xy (tensor shear).
     pub strain: [f64; 3],
     /// Largest absolute principal value of the Green-Lagrange strain in the plane at the integration points; NaN if one
-    /// of them is NaN.
+    /// value is NaN.
     pub principal_strain: f64,
-    /// Accumulated plastic strain, as a mean over the element.
+    /// Mean of the accumulated plastic strain over the element.
     pub plastic_strain: f64,
     /// Green-Lagrange strain zz across the thickness, or around the axis of a body of revolution.
     pub strain_across: f64,
@@ -35,7 +35,7 @@ pub struct ElementResult {
 pub struct Strained {
     /// Element (index).
     pub element: usize,
-    /// Largest absolute principal value of the Green-Lagrange strain of this element in the plane.
+    /// Largest absolute principal value of the Green-Lagrange strain of the element in the plane.
     pub strain: f64,
 }
 
@@ -68,8 +68,8 @@ pub struct ResultPoint {
     pub strain: SymmetricLanes,
     /// Determinant, in the plane, of the material's deformation gradient.
     pub determinant: Lanes,
-    /// Stress that is reported for the point. The reported stress does work on the strain of the displacements, or in
-    /// elements with own strains on that of the material (force/length^2).
+    /// Stress that is reported for the point. The reported stress does work on the strain of the displacements, or, in
+    /// elements with own strains, on the strain of the material (force/length^2).
     pub s: SymmetricLanes,
     /// Weight of the point (length^3).
     pub weight: Lanes,
@@ -128,7 +128,8 @@ impl Sums {
     }
 
     /// Adds a point: sigma = F S F^T/J, eq. (2.8), with J = det F F_zz, sigma_zz = F_zz S_zz F_zz/J and E_zz = (F_zz² -
-    /// 1)/2. With all components F_zz is 1 + h of the displacements; in the plane F_zz and S_zz come from the material.
+    /// 1)/2. In a body of revolution F_zz is the stretch 1 + h of the displacements; in the plane F_zz and S_zz come
+    /// from the material.
     #[inline(always)]
     pub fn add<const HOOP: bool>(
         &mut self,

@@ -21,8 +21,7 @@ pub struct IntegrationPoint<const N: usize> {
     pub volume: f64,
 }
 
-/// The map from natural coordinates r to one integration point; two elements of a shape differ only
-/// by it.
+/// The map from natural coordinates r to one integration point; two elements of a shape differ only by this map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jacobian {
     /// (dX/dr)^-1 (1/length).
@@ -72,7 +71,7 @@ impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
         points.iter().map(|p| p.shape * p.volume).sum()
     }
 
-    /// The integration points with these jacobians, where dh/dX = dh/dr (dX/dr)^-1.
+    /// The integration points with given maps dX/dr, where dh/dX = dh/dr (dX/dr)^-1.
     pub fn points(&self, jacobians: &[Jacobian; P]) -> [IntegrationPoint<N>; P] {
         let point = |p: usize| IntegrationPoint {
             shape: SVector::from(self.values[p]),
@@ -83,7 +82,7 @@ impl<const N: usize, const P: usize> ShapeFunctions<N, P> {
     }
 }
 
-/// (dX/dr)^-1 and det(dX/dr) at a place, from its natural derivatives dh_a/dr_i.
+/// Inverse (dX/dr)^-1 and determinant det(dX/dr) at a place, from the natural derivatives dh_a/dr_i there.
 fn inverse_jacobian<const N: usize>(
     x: &SMatrix<f64, 2, N>,
     natural: &[[f64; 2]; N],
@@ -101,8 +100,8 @@ fn gradients<const N: usize>(
     SMatrix::<f64, N, 2>::from_fn(|a, i| natural[a][i]) * inverse
 }
 
-/// Shape functions of N nodes at P integration points, and the two sums over the nodes that a sweep
-/// needs, each with the fewest operations for the shape.
+/// Shape functions of N nodes at P integration points, and the two sums over the nodes that a sweep needs, computed
+/// with the fewest operations for the shape.
 pub trait IntegratedShape<const N: usize, const P: usize> {
     /// The values of the shape functions at the points.
     const FUNCTIONS: ShapeFunctions<N, P>;
@@ -129,7 +128,7 @@ pub trait IntegratedShape<const N: usize, const P: usize> {
         value
     }
 
-    /// sum_p q_pi dh_a/dr_i at every node a: the transpose of [`Self::derivative`] at all points.
+    /// The sum over all points of q_pi dh_a/dr_i at every node a: the transpose of [`Self::derivative`].
     #[inline(always)]
     fn nodal_sums(q: &[[Lanes; 2]; P]) -> [Lanes; N] {
         let mut sums = [Lanes::ZERO; N];
@@ -142,8 +141,8 @@ pub trait IntegratedShape<const N: usize, const P: usize> {
         sums
     }
 
-    /// Consistent mass per density of an element between nodes at `x`, m_ab = int h_a h_b dOmega (length^3). The radius
-    /// of a ring is a further factor, so the quadrature for rings is exact to one degree more than in the plane.
+    /// Consistent mass per density, m_ab = int h_a h_b dOmega (length^3), of an element between nodes at `x`. The
+    /// radius of a ring is a further factor, so the quadrature for rings is exact to one degree more than in the plane.
     fn mass(x: &SMatrix<f64, 2, N>, thickness: Thickness) -> SMatrix<f64, N, N>;
 
     /// Share of each node in a uniform force per volume, int h_a dOmega (length^3).
@@ -170,7 +169,7 @@ impl IntegratedShape<3, 1> for Triangle {
         [Lanes::ZERO - *r - *s, *r, *s]
     }
 
-    /// m_ab = V (1 + delta_ab) / 12, in the plane.
+    /// In the plane the mass per density is m_ab = V (1 + delta_ab) / 12.
     fn mass(x: &SMatrix<f64, 2, 3>, thickness: Thickness) -> SMatrix<f64, 3, 3> {
         if thickness == Thickness::Around {
             return Self::RING_MASS.mass(x, thickness);
@@ -197,10 +196,11 @@ impl IntegratedShape<3, 1> for Triangle {
 /// ```
 pub(super) const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
-/// Natural coordinate of the integration points relative to that of the nodes, 1/sqrt(3).
+/// Natural coordinate 1/sqrt(3) of the integration points; the nodes have the coordinate 1.
 pub(super) const GAUSS: f64 = 0.577_350_269_189_625_8;
-/// Half of the linear shape function (1 + GAUSS)/2 of an edge at its nearer integration point; the half is the natural
-/// derivative across. `FAR` is half of the linear shape function (1 - GAUSS)/2 at the farther integration point.
+/// Half of the linear shape function (1 + GAUSS)/2 of an edge at its nearer integration point; this half is the natural
+/// derivative across the edge. `FAR` is half of the linear shape function (1 - GAUSS)/2 at the farther integration
+/// point.
 const NEAR: f64 = (1.0 + GAUSS) / 4.0;
 const FAR: f64 = (1.0 - GAUSS) / 4.0;
 
@@ -210,7 +210,7 @@ pub struct Quadrilateral;
 impl IntegratedShape<4, 4> for Quadrilateral {
     const FUNCTIONS: ShapeFunctions<4, 4> = bilinear(BY_FOUR, [1.0; 4]);
 
-    /// dv/dr depends only on s and dv/ds only on r; both come from the differences along the edges.
+    /// The derivative dv/dr depends only on s, and dv/ds only on r; both come from the differences along the edges.
     #[inline(always)]
     fn derivative(p: usize, v: &[Lanes; 4]) -> [Lanes; 2] {
         let (bottom, top) = (v[1] - v[0], v[2] - v[3]);
@@ -294,8 +294,8 @@ const fn bilinear<const P: usize>(
 /// ```
 pub struct QuadraticTriangle;
 
-/// The six points of degree 4 (Dunavant 1985): for three of them the natural coordinate that two of their area
-/// coordinates have, and their weight; then the same data of the other three.
+/// The six points of degree 4 (Dunavant 1985): for three points the value that two of their area coordinates have, and
+/// their weight; then the same data of the other three points.
 const DUNAVANT: [f64; 4] = [
     0.445_948_490_915_964_9,
     0.223_381_589_678_011_47,
@@ -403,7 +403,7 @@ pub struct Serendipity;
 /// The quadratic quadrilateral at 2 x 2 Gauss points.
 pub struct ReducedSerendipity;
 
-/// sqrt(3/5), the natural coordinate of the outer of three Gauss points.
+/// Natural coordinate sqrt(3/5) of the outer of three Gauss points.
 const OUTER: f64 = 0.774_596_669_241_483_4;
 
 /// The 3 x 3 Gauss points and their weights, exact up to degree 5 in r and in s.

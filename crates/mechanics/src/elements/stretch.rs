@@ -5,17 +5,18 @@
 //!
 //! With the mean Ebar of the displacement strains and Cbar = I + 2 Ebar, the strain beyond the mean is A = E + M
 //! alpha - Ebar. In the Green-Lagrange measure the strain of the element is Ebar + A. In the logarithmic measure the
-//! strain of the element is that of Cbar exp(2 Cbar^-1 A), which is additive in logarithmic strains. Cayley's
-//! approximation of the exponential agrees with it up to the second order:
+//! strain of the element belongs to the right Cauchy-Green tensor Cbar exp(2 Cbar^-1 A), so logarithmic strains are
+//! added. Cayley's approximation agrees with the exponential up to the second order:
 //!
 //! ```text
 //! I + 2 E_g = Cbar (1 - Q)^-1 (1 + Q),   Q = Cbar^-1 A
 //! E_g = Ebar + A + A H A,   H = (Cbar - A)^-1, or 0 in the measure of Green and Lagrange
 //! ```
 //!
-//! The approximation is singular where Cbar + A is. Where Cbar + A is singular, the displacements, whose strain is
-//! linear in q (eq. 2.27), turn a point of a parallelogram inside out, so the energy of the material grows before. With
-//! N = H A, W = 1 + N and dH = -H (2 dEbar - dA) H, the derivatives are
+//! The approximation of the exponential is singular where Cbar + A is singular. Where Cbar + A is singular, the
+//! displacements, whose strain is linear in q (eq. 2.27), turn a point of a parallelogram inside out, so the energy of
+//! the material grows before such a state is reached. With N = H A, W = 1 + N and dH = -H (2 dEbar - dA) H, the
+//! derivatives are
 //!
 //! ```text
 //! dE_g  = dEbar + W^T dA W - 2 N^T dEbar N = dEbar + dA + dA N + N^T B,   B = dA W - 2 dEbar N
@@ -33,7 +34,7 @@ use crate::materials::{Lanes, Number, StrainMeasure};
 pub struct Tensor {
     /// Components of the section, row by row.
     section: TensorLanes,
-    /// Component 33; it is not read without `HOOP`.
+    /// Component 33, which is not read without `HOOP`.
     z: Lanes,
 }
 
@@ -76,8 +77,8 @@ impl Tensor {
         }
     }
 
-    /// Symmetric part (A + A^T)/2. The difference between two symmetric tensors would have the round-off of their
-    /// product; this form has not.
+    /// Symmetric part (A + A^T)/2. The formula avoids the difference between two symmetric tensors, which would have
+    /// the round-off of their product.
     #[inline(always)]
     fn symmetric(&self) -> SymmetricLanes {
         let [[xx, xy], [yx, yy]] = self.section;
@@ -96,7 +97,7 @@ impl Tensor {
     }
 }
 
-/// Mean strain of an element, and the measure in which other strains are added to it.
+/// Mean strain of an element, and the strain measure in which other strains are added to the mean.
 #[derive(Clone, Copy)]
 pub struct MeanStrain {
     /// Ebar
@@ -105,19 +106,20 @@ pub struct MeanStrain {
     pub measure: StrainMeasure,
 }
 
-/// The first variation of a strain of the displacements or of the element, at a point and of its mean.
+/// The first variation of a strain of the displacements or of the element: at a point, and of the mean over the
+/// element.
 #[derive(Clone, Copy)]
 pub struct Variation {
-    /// Variation dE + M dalpha at the point.
+    /// Variation dE + M dalpha of the strain at the point.
     pub at_point: SymmetricLanes,
     /// dEbar
     pub of_mean: SymmetricLanes,
 }
 
-/// Strain of an element at a point, in terms of the mean and the strain beyond it.
+/// Strain of an element at a point, in terms of the mean strain and the strain beyond the mean.
 #[derive(Clone, Copy, Default)]
 pub struct AddedStrain {
-    /// The linear part E + M alpha.
+    /// The linear part E + M alpha of the strain.
     linear: SymmetricLanes,
     /// Further tensors of the logarithmic measure; `None` in the Green-Lagrange measure.
     stretched: Option<Stretched>,
@@ -127,14 +129,14 @@ pub struct AddedStrain {
 struct Stretched {
     /// A
     beside: Tensor,
-    /// H; NaN if the point or the mean has turned inside out.
+    /// The tensor H; NaN if the point or the mean has turned inside out.
     h: Tensor,
     /// N
     n: Tensor,
 }
 
 impl MeanStrain {
-    /// Adds the part of E + M alpha beyond the mean to the mean.
+    /// Strain of the element: the part of E + M alpha beyond the mean, added to the mean in the strain measure.
     #[inline(always)]
     pub fn add<const HOOP: bool>(&self, linear: &SymmetricLanes) -> AddedStrain {
         let stretched = match self.measure {
@@ -184,7 +186,8 @@ impl AddedStrain {
         }
     }
 
-    /// E_g less the E_g at the start of a variation, with a round-off that is relative to the variation:
+    /// Difference between the strain E_g and its value at the start of a variation, with a round-off that is relative
+    /// to the variation:
     ///
     /// ```text
     /// A1 H1 A1 - A0 H0 A0 = dA H1 A1 + A0 dH A1 + A0 H0 dA,   dH = -H1 (2 dEbar - dA) H0
@@ -227,7 +230,7 @@ impl AddedStrain {
         [*s + more, more + square.map(|s| s * 2.0)]
     }
 
-    /// dE_g of a variation, and its tensor B.
+    /// Change dE_g of the strain in a variation, and the tensor B of the variation.
     #[inline(always)]
     pub fn variation<const HOOP: bool>(
         &self,
@@ -244,7 +247,7 @@ impl AddedStrain {
         (*at_point + more.symmetric(), b)
     }
 
-    /// 2 H B S, whose product with another B is S : d²E_g; `None` in the Green-Lagrange measure.
+    /// The tensor 2 H B S, whose product with another B is S : d²E_g; `None` in the Green-Lagrange measure.
     #[inline(always)]
     pub fn second_stress<const HOOP: bool>(
         &self,

@@ -149,8 +149,7 @@ impl Sample {
         }
     }
 
-    /// The same element with a material that expands by 1e-3 a degree, at temperatures of its
-    /// nodes.
+    /// The same element with a material that expands by 1e-3 a degree, at the given temperatures of its nodes.
     fn heated(mut self, temperature: impl Fn(usize) -> f64) -> Self {
         self.model.materials[0].expansion = Some(Expansion {
             zero: 0.0,
@@ -175,7 +174,7 @@ impl Sample {
         displacements(self.x.len(), seed) * size
     }
 
-    /// Homogeneous displacements (F - I) X.
+    /// Homogeneous displacements (F - I) X of nodes at X.
     fn homogeneous(&self, f: Matrix2<f64>) -> DVector<f64> {
         let moved = self.x.iter().flat_map(|&[x, y]| {
             let moved = f * nalgebra::Vector2::new(x, y);
@@ -437,8 +436,9 @@ fn nearly_incompressible_elements_keep_their_energy() {
     }
 }
 
-/// A motion of a metal in many increments, which is checked. Every increment conserves the energy, and committing it
-/// changes the force at its end by no more than a small part. Returns the dissipated energy of the whole motion.
+/// A motion of a metal in many increments, which is checked. Every increment conserves the energy, and committing its
+/// variables changes the force at its end by no more than a small part. Returns the dissipated energy of the whole
+/// motion.
 fn check_metal(
     sample: &Sample,
     at: impl Fn(f64) -> DVector<f64>,
@@ -549,8 +549,8 @@ fn plane_strain_holds_the_thermal_expansion_across() {
     }
 }
 
-/// A metal is drawn, bent and heated at once. In every increment the work of the force at mid-increment plus that of
-/// the temperature is the stored plus the dissipated energy.
+/// A metal is drawn, bent and heated at once. In every increment the work of the force at mid-increment plus the work
+/// of the temperature equals the stored plus the dissipated energy.
 #[test]
 fn heated_metals_keep_their_energy() {
     for element_type in ElementType::NAMED {

@@ -9,10 +9,10 @@ use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
 
 /// A law with internal variables. From the strains of an iterate and the internal variables z0, which the last accepted
-/// increment has committed, it computes the stress, its tangent, and the internal variables z1 of the iterate. The law
-/// computes them by a local solution (return mapping).
+/// increment has committed, the law computes the stress, the tangent, and the internal variables z1 of the iterate. The
+/// law computes z1 by a local solution (return mapping).
 ///
-/// Energies are per reference volume (force/length^2); the stored energy is kept apart from the dissipated one.
+/// Energies are per reference volume (force/length^2); the stored energy is kept apart from the dissipated energy.
 pub trait Flow {
     /// Number of internal variables at a point.
     fn variables(&self) -> usize;
@@ -30,7 +30,7 @@ pub trait Flow {
     /// Stored energy W(E, z).
     fn stored_energy(&self, e: &Symmetric, z: &[f64]) -> f64;
 
-    /// Energy D >= 0 dissipated on the way from z0 to the z1 that belong to the strains.
+    /// Energy D >= 0 dissipated as the variables change from z0 to the z1 of the strains.
     fn dissipation(&self, strains: &Strains, z0: &[f64]) -> f64;
 
     /// Stretch and stress across the plane.
@@ -51,17 +51,19 @@ pub trait Flow {
 }
 
 /// Functions of a metal that elements with hourglass modes call: a potential W(E; m), without the elastic energy of the
-/// modes. The argument m is the part that the modes add to q² (force^2/length^4), eq. (2.48).
+/// modes. The argument m is the part that the modes add to the square q² of the von Mises stress (force^2/length^4),
+/// eq. (2.48).
 pub trait MetalLaw: std::fmt::Debug {
     /// The moduli 3 mu and H_k (force/length^2).
     fn moduli(&self) -> [f64; 2];
 
-    /// Writes the internal variables at the end of the strains of an increment, with m at its start and at its end.
-    /// Returns the dissipated energy (force/length^2) and the part r of the trial strain that flows.
+    /// Writes the internal variables at the end of the strains of an increment, with the squares m of the modes at its
+    /// start and at its end. Returns the dissipated energy (force/length^2) and the part r of the trial strain that
+    /// flows.
     fn update(&self, strains: &Strains, z0: &[f64], modes: [f64; 2], z1: &mut [f64]) -> [f64; 2];
 
-    /// Change of W between two strains and their m, with a round-off that is relative to the changes (force/length^2);
-    /// `by` is the difference of m.
+    /// Change of the potential W between two strains with their squares m, with a round-off that is relative to the
+    /// changes (force/length^2); `by` is the difference of m.
     fn change(&self, z0: &[f64], strains: &StrainChange, modes: [f64; 2], by: f64) -> f64;
 
     /// The stress S (force/length^2) and the derivative dW/dm.
@@ -91,7 +93,7 @@ pub struct Metal<'a> {
     pub of_point: &'a [f64],
 }
 
-/// A stress that depends on the strains at the integration points of elements: the one of their material, or of its
+/// A stress that depends on the strains at the integration points of elements: the stress of the material, or of its
 /// viscosity.
 pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
     /// Second Piola-Kirchhoff stress at a point, eq. (2.3), or energy-momentum stress, eq. (4.8) (force/length^2).
@@ -101,7 +103,7 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
     /// (force/length^2).
     fn tangent_at(&self, point: usize, strains: &Strains<T>) -> Tangent<T>;
 
-    /// [`Self::stress_at`] for the elements that are wanted; the values of others are arbitrary.
+    /// [`Self::stress_at`] for the elements that are wanted; the values of other elements are arbitrary.
     fn stress_where(
         &self,
         _wanted: [bool; LANES],
@@ -111,7 +113,7 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
         self.stress_at(point, strains)
     }
 
-    /// [`Self::tangent_at`] for the elements that are wanted; the values of others are arbitrary.
+    /// [`Self::tangent_at`] for the elements that are wanted; the values of other elements are arbitrary.
     fn tangent_where(
         &self,
         _wanted: [bool; LANES],
@@ -127,13 +129,13 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
     /// Stretch and stress across the plane at a point.
     fn across_at(&self, point: usize, e: &Symmetric<T>) -> Across<T>;
 
-    /// Whether the stress depends on a change of the strains and has no stored energy.
+    /// Whether the stress depends on a change of the strains and stores no energy (viscosity).
     fn is_viscous(&self) -> bool {
         false
     }
 
-    /// The measure of strain in which the potential of the stress is convex; it is logarithmic if the law fulfils
-    /// Hill's inequality. The potential of a viscosity is quadratic in the Green-Lagrange strains.
+    /// The measure of strain in which the potential of the stress is convex; the measure is logarithmic if the law
+    /// fulfils Hill's inequality. The potential of a viscosity is quadratic in the Green-Lagrange strains.
     fn convex_in(&self) -> StrainMeasure {
         StrainMeasure::Green
     }
@@ -153,8 +155,8 @@ pub trait StressAtPoints<T = f64, const HOOP: bool = true> {
         0.0
     }
 
-    /// Writes the internal variables of an element at the end of the strains of a point into those of all its points,
-    /// and returns the energy dissipated on the way (force/length^2).
+    /// Computes the internal variables at the end of the strains of one point, writes them to all points of the
+    /// element, and returns the energy dissipated in the increment (force/length^2).
     fn update_at(&self, _lane: usize, _point: usize, _strains: &Strains, _z1: &mut [f64]) -> f64 {
         0.0
     }

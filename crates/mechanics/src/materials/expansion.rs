@@ -23,13 +23,14 @@ use super::{Plane, StressAtPoints};
 /// Largest number of points of an element.
 const MAX_POINTS: usize = 9;
 
-/// Thermal expansion of a material, `*EXPANSION`, by a coefficient alpha of the mean expansion from a temperature T0
+/// Thermal expansion of a material (`*EXPANSION`): the coefficient alpha is the mean expansion from a temperature T0
 /// (the secant rule of Abaqus and CalculiX).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expansion {
-    /// Temperature T0 from which alpha counts.
+    /// Temperature T0 from which the mean expansion alpha is measured.
     pub zero: f64,
-    /// Increasing temperatures, each with alpha (1/temperature); alpha is linear between them and constant outside.
+    /// Increasing temperatures, each with alpha (1/temperature); alpha is linear between these temperatures and
+    /// constant outside.
     pub table: Vec<[f64; 2]>,
 }
 
@@ -64,7 +65,7 @@ impl Expansion {
     }
 }
 
-/// The stretch theta, with numbers computed from it.
+/// The stretch theta, with numbers computed from theta.
 #[derive(Debug, Clone, Copy)]
 struct Stretch<T> {
     /// theta
@@ -102,7 +103,7 @@ impl<T: Number> Stretch<T> {
         self.theta * self.theta * self.theta
     }
 
-    /// E_m of a strain E, eq. (2.53). In plane stress the law determines the strain across the
+    /// Strain E_m of the law for a strain E, eq. (2.53). In plane stress the law determines the strain across the
     /// plane.
     fn relative(&self, e: &Symmetric<T>, plane: Plane) -> Symmetric<T> {
         let normal = |e: T| (e - self.strain) * self.over_square;
@@ -117,7 +118,7 @@ impl<T: Number> Stretch<T> {
         }
     }
 
-    /// E_m of the strains of an increment.
+    /// Strains E_m of the law for the strains of an increment.
     fn relative_change(&self, change: &StrainChange<T>, plane: Plane) -> StrainChange<T> {
         let relative = |e: &Symmetric<T>| self.relative(e, plane);
         StrainChange {
@@ -256,7 +257,7 @@ impl<const HOOP: bool> StressAtPoints<Lanes, HOOP> for Expanded<'_> {
 }
 
 /// A metal with a thermal stretch. The modes of its element have the stiffness Kh/theta and the amplitudes y/theta², so
-/// the part that they add to q² of the law is m/theta³.
+/// the modes add m/theta³ to the square q² of the law.
 #[derive(Debug, Clone, Copy)]
 struct ExpandedMetal<'a> {
     law: &'a dyn MetalLaw,

@@ -1,5 +1,5 @@
-//! Hencky's material: Kirchhoff stress linear in the logarithmic strain (Hencky, Z. techn. Phys. 9, 1928; Anand, J. Appl. Mech.
-//! 46, 1979). See docs/theory/materials.md.
+//! Hencky's material: Kirchhoff stress linear in the logarithmic strain (Hencky 1928; Anand 1979). See
+//! docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
 use super::spectrum::{Spectrum, log_change};
@@ -36,13 +36,13 @@ impl Hencky {
 }
 
 impl Hyperelastic for Hencky {
-    /// W = T : E_h/2, eq. (2.51).
+    /// Stored energy W = T : E_h/2, eq. (2.51).
     fn energy(&self, e: &Symmetric) -> f64 {
         let strain = Spectrum::of_strain(e).logarithmic_strain();
         contract(&self.moduli.stress(&strain), &strain) / 2.0
     }
 
-    /// W(E1) - W(E0) = T(E_h0 + dE_h/2) : dE_h.
+    /// Change of the stored energy, W(E1) - W(E0) = T(E_h0 + dE_h/2) : dE_h.
     fn energy_change(&self, change: &StrainChange) -> f64 {
         let StrainChange {
             start, end, half, ..
@@ -52,7 +52,7 @@ impl Hyperelastic for Hencky {
         contract(&self.moduli.stress(&mean), &by)
     }
 
-    /// S = (D ln C) : T, eq. (2.51).
+    /// Stress S = (D ln C) : T, eq. (2.51).
     fn stress(&self, e: &Symmetric) -> Symmetric {
         let spectrum = Spectrum::of_strain(e);
         spectrum.log_derivative(&self.moduli.stress(&spectrum.logarithmic_strain()))

@@ -1,42 +1,42 @@
 //! Elastic materials, whose stress is the derivative of a stored energy. The energy-momentum stress is the discrete
-//! gradient of Gonzalez (Comput. Methods Appl. Mech. Engrg. 190, 2000) in the Green-Lagrange strain. See
-//! docs/theory/materials.md and docs/theory/time.md.
+//! gradient of Gonzalez (2000) in the Green-Lagrange strain. See docs/theory/materials.md and docs/theory/time.md.
 //!
 //! # Derivation
 //!
-//! The force int B_L(U_m)^T S dOmega at the mid configuration U_m does the work d.F = int S:dE dOmega with any S,
-//! because exactly B_L(U_m) d = E1 - E0 = dE (E is quadratic in U). A symmetric S conserves the angular momentum. The
-//! energy is conserved if S:dE = W1 - W0. Of all stresses with this property, the nearest to S(E_m), with E_m = (E0 +
-//! E1)/2, is S(E_m) + lambda dE:
+//! The force int B_L(U_m)^T S dOmega at the mid configuration U_m does the work d.F = int S:dE dOmega with any stress
+//! S, because B_L(U_m) d = E1 - E0 = dE holds exactly (E is quadratic in U). A symmetric stress S conserves the angular
+//! momentum. The energy is conserved if the stress S satisfies S:dE = W1 - W0. Of all stresses with S:dE = W1 - W0, the
+//! stress nearest to S(E_m), with E_m = (E0 + E1)/2, is S(E_m) + lambda dE:
 //!
 //! ```text
 //! S = S(E_m) + f/(dE:dE) dE,     f = W1 - W0 - S(E_m):dE
 //! ```
 //!
-//! The scalar f is of third order in dE, so the scheme keeps its second order. If W is quadratic, f is zero and S is
-//! the mean (S0 + S1)/2 of Simo & Tarnow (1992). C_m = I + 2 E_m is positive definite because C0 and C1 are.
+//! The scalar f is of third order in dE, so the scheme keeps its second order. If the stored energy W is quadratic, the
+//! correction f is zero and S is the mean (S0 + S1)/2 of Simo & Tarnow (1992). The tensor C_m = I + 2 E_m is positive
+//! definite because C0 and C1 are positive definite.
 
 use super::number::Number;
 use super::strains::{Across, StrainChange, StrainMeasure, Strains};
 use super::symmetric::{Symmetric, Tangent};
 
 /// Norm of dE up to which the correction f is neglected. The correction f changes the energy by a
-/// relative amount of about |dE| or less, which is round-off below this bound.
+/// relative amount of about |dE| or less, which is round-off if |dE| is below the bound.
 pub const NO_CHANGE: f64 = f64::EPSILON;
 
-/// Norm of dE up to which the tangent is that of S(E_m): the omitted part is a relative amount of about |dE| and would
-/// have a round-off of about eps/|dE|.
+/// Norm of dE up to which the tangent of S(E_m) is used: the omitted part of the tangent is relatively about |dE|, and
+/// would have a round-off of about eps/|dE|.
 pub const NO_CHANGE_OF_TANGENT: f64 = 1.5e-8;
 
-/// A stored energy W(E) of the strain, for numbers T. Without `HOOP` the strain 33 is zero, or depends on the strains
-/// in the plane.
+/// A stored energy W(E) of the strain, for numbers T. Without `HOOP` the strain component 33 is zero, or depends on the
+/// strains in the plane.
 pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
     /// W(E) (force/length^2).
     fn energy(&self, e: &Symmetric<T>) -> T;
 
-    /// W(E1) - W(E0), with a round-off that is relative to E1 - E0 (force/length^2). The difference
-    /// of energies must not be computed from two energies: it would have no correct digits if E1 is
-    /// near E0.
+    /// Change of the stored energy, W(E1) - W(E0), with a round-off that is relative to E1 - E0 (force/length^2). The
+    /// change must not be computed as a difference of two energies, which would have no correct digits if E1 is near
+    /// E0.
     fn energy_change(&self, change: &StrainChange<T>) -> T;
 
     /// Second Piola-Kirchhoff stress S = dW/dE, eq. (2.3) (force/length^2).
@@ -66,7 +66,8 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
         }
     }
 
-    /// The measure of strain in which the energy is convex; it is logarithmic if the law fulfils Hill's inequality.
+    /// The measure of strain in which the energy is convex; the measure is logarithmic if the law fulfils Hill's
+    /// inequality.
     fn convex_in(&self) -> StrainMeasure {
         StrainMeasure::Logarithmic
     }
@@ -96,7 +97,7 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
         corrected_tangent::<T, HOOP>(&c, &n, (f, &g))
     }
 
-    /// Stress at a strain or between two.
+    /// Stress at a strain or between two strains.
     #[inline(always)]
     fn stress_of(&self, strains: &Strains<T>) -> Symmetric<T>
     where
@@ -108,7 +109,7 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
         }
     }
 
-    /// Tangent at a strain or between two.
+    /// Tangent at a strain or between two strains.
     #[inline(always)]
     fn tangent_of(&self, strains: &Strains<T>) -> Tangent<T>
     where
@@ -121,7 +122,7 @@ pub trait Hyperelastic<T = f64, const HOOP: bool = true> {
     }
 }
 
-/// S + f/(n:n) n of eq. (4.8), with n = E1 - E0 (force/length^2).
+/// Stress S + f/(n:n) n of eq. (4.8), with n = E1 - E0 (force/length^2).
 #[inline(always)]
 pub fn corrected_stress<T: Number, const HOOP: bool>(
     s: &Symmetric<T>,
@@ -160,7 +161,7 @@ pub fn corrected_tangent<T: Number, const HOOP: bool>(
     })
 }
 
-/// f/(n:n), or 0 if |n| is not above a bound.
+/// The factor f/(n:n), or 0 if |n| is not above a bound.
 #[inline(always)]
 fn over<T: Number>(f: T, squared: T, bound: f64) -> T {
     (f / squared).where_kept(|lane| {
@@ -383,8 +384,8 @@ mod tests {
         }
     }
 
-    /// Stress and tangent of several elements in the plane are the same as those of single elements
-    /// with all components.
+    /// Stress and tangent of several elements in the plane are the same as the results for single elements with all
+    /// components.
     #[test]
     fn in_lanes_and_without_hoop_laws_are_the_same() {
         use crate::materials::{Elastic, Lanes, OneByOne, StressAtPoints};

@@ -13,13 +13,12 @@ use super::symmetric::{Symmetric, Tangent, cofactor, dyad, minor, product, with_
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct VolumeEnergy {
-    /// D1, D2, D3 (length^2/force); the first is positive, and a zero means that there is no such
-    /// term.
+    /// Constants D1, D2, D3 (length^2/force); D1 is positive, and a constant of zero means that there is no such term.
     pub d: [f64; 3],
 }
 
 impl VolumeEnergy {
-    /// 1/D1, 1/D2, 1/D3; zero for a missing term.
+    /// Inverses 1/D1, 1/D2, 1/D3; zero for a missing term.
     #[inline(always)]
     fn stiffnesses(&self) -> [f64; 3] {
         self.d.map(|d| if d > 0.0 { 1.0 / d } else { 0.0 })
@@ -32,7 +31,7 @@ impl VolumeEnergy {
         self.d[1] == 0.0 && self.d[2] == 0.0
     }
 
-    /// U as a function of J - 1 (force/length^2).
+    /// Energy U as a function of J - 1 (force/length^2).
     #[inline(always)]
     pub fn energy<T: Number>(&self, grown: T) -> T {
         let ([k1, k2, k3], r) = (self.stiffnesses(), grown * grown);
@@ -69,7 +68,8 @@ impl VolumeEnergy {
 
 /// An energy W = w(x) + C01 y + U(J) of invariants.
 ///
-/// C = I + 2 E has the invariants I1, I2 and I3 = J²; a = J^(2/3), x = I1/a - 3, y = I2/a² - 3 and P = C^-1:
+/// The tensor C = I + 2 E has the invariants I1, I2 and I3 = J²; with a = J^(2/3), x = I1/a - 3, y = I2/a² - 3 and P =
+/// C^-1 the energy and the stress are:
 ///
 /// ```text
 /// stress   S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P
@@ -107,20 +107,20 @@ pub trait InvariantEnergy {
 
 /// Measures of the change of volume and shape at a strain.
 struct Invariants<T> {
-    /// G = 2 E.
+    /// Tensor G = 2 E.
     g: Symmetric<T>,
-    /// i, m and n: trace of G, the sum of its principal minors, and its determinant.
+    /// Invariants i, m and n of G: its trace, the sum of its principal minors, and its determinant.
     i: T,
     m: T,
     n: T,
-    /// s = i + m + n, with J² = 1 + s.
+    /// Sum s = i + m + n of the invariants of G, with J² = 1 + s.
     s: T,
     j: T,
-    /// J - 1 = s/(J + 1).
+    /// Change of volume J - 1 = s/(J + 1).
     grown: T,
-    /// a = J^(2/3).
+    /// Factor a = J^(2/3).
     a: T,
-    /// b = a - 1 = s/(a² + a + 1).
+    /// Difference b = a - 1 = s/(a² + a + 1).
     b: T,
     /// The inverses 1/a and 1/J².
     over_a: T,
@@ -162,26 +162,26 @@ impl<T: Number> Invariants<T> {
         }
     }
 
-    /// a x = a (I1/a - 3).
+    /// Product a x = a (I1/a - 3).
     #[inline(always)]
     fn distortion(&self) -> T {
         self.b * self.b * (self.b + 3.0) - self.m - self.n
     }
 
-    /// x = I1/a - 3.
+    /// Invariant x = I1/a - 3 of the distortion.
     #[inline(always)]
     fn x(&self) -> T {
         self.distortion() * self.over_a
     }
 
-    /// y = I2/a² - 3.
+    /// Invariant y = I2/a² - 3 of the distortion.
     #[inline(always)]
     fn y(&self) -> T {
         let b = self.b;
         (b * b * (b * 2.0 + 3.0) - self.m - self.n * 2.0) * (self.over_a * self.over_a)
     }
 
-    /// cof C - I = tr(G) I - G + cof G; without `HOOP` C_33 = 1.
+    /// Difference cof C - I = tr(G) I - G + cof G; without `HOOP` C_33 = 1.
     #[inline(always)]
     fn change_of_cofactor<const HOOP: bool>(&self) -> Symmetric<T> {
         let Symmetric { x, y, z, w } = self.g;
@@ -192,7 +192,7 @@ impl<T: Number> Invariants<T> {
         }
     }
 
-    /// cof C = I3 C^-1.
+    /// Cofactor tensor cof C = I3 C^-1.
     #[inline(always)]
     fn cofactor<const HOOP: bool>(&self) -> Symmetric<T> {
         let change = self.change_of_cofactor::<HOOP>();
@@ -213,7 +213,7 @@ impl<T: Number> Invariants<T> {
 }
 
 impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for L {
-    /// W = w(x) + C01 y + U(J), eq. (2.14) and eq. (2.23).
+    /// Stored energy W = w(x) + C01 y + U(J), eq. (2.14) and eq. (2.23).
     #[inline(always)]
     fn energy(&self, e: &Symmetric<T>) -> T {
         let v = Invariants::new::<HOOP>(e);
@@ -224,7 +224,7 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
         }
     }
 
-    /// W(E1) - W(E0), from dE; m is quadratic and n cubic in G:
+    /// Change of the stored energy, W(E1) - W(E0), computed from dE; the invariant m is quadratic and n cubic in G:
     ///
     /// ```text
     /// dm = (tr(G_m) I - G_m):dG                 dq = (cof of G_m in the plane):dG,  n = G_33 q
@@ -270,8 +270,8 @@ impl<T: Number, const HOOP: bool, L: InvariantEnergy> Hyperelastic<T, HOOP> for 
         energy + dy * self.c01()
     }
 
-    /// S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P, eq. (2.15) and eq. (2.24). With K = cof C - I
-    /// the first and the last term are
+    /// Stress S = 2 w' (I - I1/3 P)/a + 2 C01 (I1 I - C - 2 I2/3 P)/a² + U' J P, eq. (2.15) and eq. (2.24). With K =
+    /// cof C - I the first and the last term of the stress are
     ///
     /// ```text
     /// (shape (2 i/3 + m + n) + p J/J²) I + (p J/J² - shape (1 + i/3)) K,   shape = 2 w'/(a J²)

@@ -26,7 +26,7 @@ pub enum Law {
     Hencky(Hencky),
     /// `*HYPERELASTIC, NEO HOOKE`
     NeoHooke(NeoHooke),
-    /// Forms of `*HYPERELASTIC` other than `NEO HOOKE`.
+    /// Other forms of `*HYPERELASTIC` than `NEO HOOKE`.
     Polynomial(Polynomial),
     /// `*HYPERELASTIC, OGDEN`
     Ogden(Ogden),
@@ -109,7 +109,7 @@ impl Law {
         }
     }
 
-    /// Whether the law is not meant for strains that are not small against 1.
+    /// Whether the law is meant only for strains that are small against 1.
     pub fn is_for_small_strains(&self) -> bool {
         matches!(self, Law::SaintVenantKirchhoff(_))
     }
@@ -181,7 +181,7 @@ pub enum PlaneLaw {
     Yielding(Yielding),
 }
 
-/// A law by the data that it needs.
+/// A law, sorted by the data that it needs.
 enum Kind<'a> {
     /// A law that needs only the strain.
     Elastic(&'a dyn Hyperelastic),
@@ -234,7 +234,7 @@ impl PlaneLaw {
     }
 }
 
-/// A law for several elements at a time, with the internal variables of their points.
+/// A law for several elements at a time, with the internal variables of the elements' points.
 pub enum LawInLanes<'a> {
     /// St. Venant-Kirchhoff material.
     SaintVenantKirchhoff(Elastic<'a, PlaneSaintVenantKirchhoff>),
@@ -306,7 +306,7 @@ impl<'a> Committed<'a> {
         OneByOne(variables.map(|z| Committed::new(law, z)))
     }
 
-    /// Internal variables of a point among those of the element.
+    /// Internal variables of a point, among the variables of the element.
     fn of_point(&self, point: usize) -> Range<usize> {
         let count = self.law.variables();
         point * count..(point + 1) * count
@@ -401,7 +401,7 @@ mod tests {
         committed: Variables,
     }
 
-    /// An increment to new strains: the state at its end, the work of the stresses, and the energy
+    /// An increment to new strains: the state at the end of the increment, the work of the stresses, and the energy
     /// dissipated; `None` if the strain has changed too much at once.
     fn attempt(start: &State, strains: [Symmetric; 2]) -> Option<(State, f64, f64)> {
         let material = Committed::new(&PLANE_LAW, &start.committed);
@@ -422,7 +422,7 @@ mod tests {
         at(0) + at(1)
     }
 
-    /// Strains of the two points at a time; the second has a quarter of the first with other signs.
+    /// Strains of the two points at a time; the strain of the second point is a quarter of the first, with other signs.
     fn path(time: f64) -> [Symmetric; 2] {
         let e = Symmetric::new(0.06, -0.03, 0.0, 0.01) * (2.0 * time).sin();
         [e, e * -0.25]

@@ -5,8 +5,8 @@
 //! A deformation gradient F enters only through E = (F^T F - I)/2, so every material is objective; elements check that
 //! det F > 0. A material point has the components 11, 22, 33 and 12 of a [`Symmetric`] tensor: 33 is across the plane,
 //! or around the axis of a body of revolution. Laws are written once, for any [`Number`]: the number of one element, or
-//! those of several at a time. A [`Law`] has the constants of the deck; a [`PlaneLaw`] is the same law in the plane of
-//! the elements.
+//! the numbers of several elements at a time. A [`Law`] has the constants of the deck; a [`PlaneLaw`] is the same law
+//! in the plane of the elements.
 
 mod constitutive_law;
 mod expansion;

@@ -19,7 +19,7 @@ use super::{LawCard, SmallStrainModuli};
 /// moduli   mu = 2 C10,  K = 2/D1
 /// ```
 ///
-/// (A o A)_ijkl = (A_ik A_jl + A_il A_jk)/2.
+/// The product A o A has the components (A o A)_ijkl = (A_ik A_jl + A_il A_jk)/2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NeoHooke {
     /// Shear constant C10 (force/length^2, > 0).
@@ -47,13 +47,13 @@ impl NeoHooke {
         }]
     }
 
-    /// Moduli from mu = 2 C10 and K = 2/D1.
+    /// Moduli at small strains, from mu = 2 C10 and K = 2/D1.
     pub fn small_strain(&self) -> SmallStrainModuli {
         SmallStrainModuli::of_shear_and_bulk(2.0 * self.c10, 2.0 / self.d1)
     }
 }
 
-/// w = C10 x, U = (J - 1)²/D1, eq. (2.14).
+/// The energy parts are w = C10 x and U = (J - 1)²/D1, eq. (2.14).
 impl InvariantEnergy for NeoHooke {
     const LINEAR: bool = true;
     const SECOND: bool = false;

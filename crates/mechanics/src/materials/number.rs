@@ -1,4 +1,4 @@
-//! Numbers for which a law is written: one number, or those of several elements, on which one instruction of the
+//! Numbers for which a law is written: one number, or the numbers of several elements, on which one instruction of the
 //! processor acts. See docs/numerics.md, Sweeps over elements.
 
 use std::array::from_fn;
@@ -39,8 +39,9 @@ pub trait Number:
     /// Square root.
     fn sqrt(self) -> Self;
 
-    /// 1/x^(1/3) for positive numbers that are not subnormal; NaN for others. A start value r that is within 4 % comes
-    /// from a third of the exponent. Each step raises the relative error of r to the fourth power, with h = 1 - x r³:
+    /// Inverse cube root 1/x^(1/3) of positive numbers that are not subnormal; NaN for other numbers. A third of the
+    /// exponent gives a start value r with an error of at most 4 %. Each step raises the relative error of r to the
+    /// fourth power, with h = 1 - x r³:
     ///
     /// ```text
     /// r <- r (1 + h/3 + 2 h²/9 + 14 h³/81)
@@ -65,7 +66,7 @@ pub trait Number:
         Self::of_lanes(|lane| of(self.lane(lane)))
     }
 
-    /// The numbers for which `keep` is true, and zero in place of the others.
+    /// The numbers for which `keep` is true, and zero in place of other numbers.
     #[inline(always)]
     fn where_kept(self, keep: impl Fn(usize) -> bool) -> Self {
         Self::of_lanes(|lane| match keep(lane) {
@@ -75,7 +76,7 @@ pub trait Number:
     }
 }
 
-/// Four thirds of the bits of 1, reduced so that the largest error of the start is least.
+/// Four thirds of the bits of 1, reduced by the amount that makes the largest error of the start value least.
 const INVERSE_CUBE_ROOT: u64 = 0x553e_f0ff_289d_d796;
 
 impl Number for f64 {
@@ -107,8 +108,7 @@ impl Number for f64 {
 #[repr(align(16))]
 pub struct Lanes(pub [f64; LANES]);
 
-/// For every element whether all its numbers so far were positive; then all bits of its entry are
-/// set.
+/// For every element whether all its numbers so far were positive; if so, all bits of the entry are set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Positive([u64; LANES]);
 
@@ -116,7 +116,7 @@ impl Lanes {
     /// Zero.
     pub const ZERO: Lanes = Lanes([0.0; LANES]);
 
-    /// 1/x, and a large number for x = 0.
+    /// Inverse 1/x, and a large number for x = 0.
     #[inline(always)]
     pub fn inverse(self) -> Lanes {
         Lanes(self.0.map(|x| 1.0 / x.max(f64::MIN_POSITIVE)))
@@ -148,7 +148,8 @@ impl Number for Lanes {
     }
 }
 
-/// Defines an operation between numbers of the same elements, and with one number for all elements.
+/// Defines an operation between numbers of the same elements, and between these numbers and one number for all
+/// elements.
 macro_rules! operation {
     ($operation:ident, $function:ident, $symbol:tt) => {
         impl $operation for Lanes {
@@ -202,7 +203,7 @@ impl Positive {
         Positive([at(0), at(1)])
     }
 
-    /// Combines two states: in both all numbers must be positive.
+    /// Combines two states: all numbers of both states must be positive.
     #[inline(always)]
     #[must_use]
     pub fn both(self, other: Positive) -> Positive {

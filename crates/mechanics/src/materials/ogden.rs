@@ -1,6 +1,5 @@
 //! Compressible hyperelastic material of Ogden: powers of the principal stretches of the distortion, and the volume
-//! (Ogden, Proc. R. Soc. Lond. A 326, 1972; Holzapfel, Nonlinear Solid Mechanics, section 6.5). See
-//! docs/theory/materials.md.
+//! (Ogden 1972; Holzapfel, Nonlinear Solid Mechanics, section 6.5). See docs/theory/materials.md.
 
 use super::hyperelastic::Hyperelastic;
 use super::invariants::VolumeEnergy;
@@ -26,7 +25,7 @@ use super::{LawCard, SmallStrainModuli};
 /// Small strains keep their digits: the sum of the d_i is zero, so exp(x) - 1 - x is used in place of exp(x).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ogden {
-    /// mu_k (force/length^2) and alpha_k of up to three terms; missing terms are zero.
+    /// Constants mu_k (force/length^2) and alpha_k of up to three terms; missing terms are zero.
     pub terms: [[f64; 2]; 3],
     /// The energy of the volume.
     pub volume: VolumeEnergy,
@@ -85,7 +84,7 @@ impl Ogden {
         self.terms.iter().rposition(is_term).map_or(0, |k| k + 1)
     }
 
-    /// Moduli from mu = sum mu_k and K = 2/D1.
+    /// Moduli at small strains, from mu = sum mu_k and K = 2/D1.
     pub fn small_strain(&self) -> SmallStrainModuli {
         let mu = self.terms.iter().map(|[mu, _]| mu).sum();
         SmallStrainModuli::of_shear_and_bulk(mu, 2.0 / self.volume.d[0])
@@ -95,7 +94,7 @@ impl Ogden {
         self.terms.iter().copied().filter(|[mu, _]| *mu != 0.0)
     }
 
-    /// The derivatives beta_i, and J U' + J² U''.
+    /// The derivatives beta_i of the energy, and J U' + J² U''.
     fn slopes(&self, at: &Principal) -> ([f64; 3], f64) {
         let grown = at.volume.exp_m1();
         let ([p, stiff], j) = (self.volume.slopes(grown), 1.0 + grown);
@@ -110,8 +109,8 @@ impl Ogden {
         (beta, j * (p + j * stiff))
     }
 
-    /// Change of T for a change of the logarithmic strain, both in the principal frame. The off-diagonal factor of this
-    /// change is (beta_1 - beta_2)/(e_1 - e_2).
+    /// Change of the stress T for a change of the logarithmic strain, both in the principal frame. The off-diagonal
+    /// factor of the change of T is (beta_1 - beta_2)/(e_1 - e_2).
     fn stress_change(&self, at: &Principal, of_volume: f64, a: &Symmetric) -> Symmetric {
         let change = [a.x, a.y, a.z];
         let trace = a.x + a.y + a.z;
@@ -149,7 +148,7 @@ fn principal_change(from: &Symmetric, by: &Symmetric) -> [f64; 3] {
 }
 
 impl Hyperelastic for Ogden {
-    /// W, eq. (2.50).
+    /// Stored energy W, eq. (2.50).
     fn energy(&self, e: &Symmetric) -> f64 {
         let at = Principal::new(e);
         let of_term = |[mu, alpha]: [f64; 2]| {
@@ -159,7 +158,7 @@ impl Hyperelastic for Ogden {
         self.of_terms().map(of_term).sum::<f64>() + self.volume.energy(at.volume.exp_m1())
     }
 
-    /// W(E1) - W(E0) from the changes of the d_i and of ln J:
+    /// Change of the stored energy, W(E1) - W(E0), from the changes of the d_i and of ln J:
     ///
     /// ```text
     /// exp(x1) - exp(x0) = (exp(x0) - 1)(exp(dx) - 1) + (exp(dx) - 1 - dx) + dx,   the sum of the dx is zero
@@ -189,7 +188,7 @@ impl Hyperelastic for Ogden {
         self.of_terms().map(of_term).sum::<f64>() + dj * self.volume.quotient(grown[0], grown[1])
     }
 
-    /// S = (D ln C) : T, eq. (2.50).
+    /// Stress S = (D ln C) : T, eq. (2.50).
     fn stress(&self, e: &Symmetric) -> Symmetric {
         let at = Principal::new(e);
         let ([x, y, z], _) = self.slopes(&at);

@@ -34,7 +34,7 @@ impl SmallStrainModuli {
         self.young / (3.0 * (1.0 - 2.0 * self.poisson))
     }
 
-    /// Stress (K - 2/3 mu) tr(A) I + 2 mu A, linear in a strain A (force/length^2).
+    /// Stress (K - 2/3 mu) tr(A) I + 2 mu A for a strain A (force/length^2).
     pub(super) fn stress(&self, strain: &Symmetric) -> Symmetric {
         let trace = strain.x + strain.y + strain.z;
         let lambda = self.bulk() - 2.0 / 3.0 * self.shear();

@@ -7,9 +7,10 @@ use super::symmetric::{Symmetric, Tangent};
 
 /// A stored energy without stress across the plane.
 ///
-/// The stretch across the plane, F_33 = exp(l), minimises W, so S_33 C_33 = 0. W then depends only on the strains in
-/// the plane, eq. (2.25), and its tangent has no row across the plane: C_ab - C_a3 C_3b/C_33. An error of the strain
-/// across the plane enters W squared. In the strains given by a caller the component 33 is zero.
+/// The stretch across the plane, F_33 = exp(l), minimises the energy W, so S_33 C_33 = 0. The energy then depends only
+/// on the strains in the plane, eq. (2.25), and the tangent has no row across the plane: C_ab - C_a3 C_3b/C_33. Only
+/// the square of an error of the strain across the plane enters the energy W. In the strains given by a caller the
+/// component 33 is zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaneStress<L> {
     /// The law with all components.
@@ -20,17 +21,18 @@ pub struct PlaneStress<L> {
 
 /// Largest number of steps of Newton's method for the stretch across the plane.
 const MOST_STEPS: usize = 60;
-/// Change of l, relative to l and the strains, up to which it is round-off.
+/// Change of the exponent l, relative to l and the strains, up to which the change is round-off.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 impl<L: Hyperelastic> PlaneStress<L> {
-    /// E_33 = (exp(2 l) - 1)/2 by Newton's method in l, with the derivatives of W
+    /// Strain E_33 = (exp(2 l) - 1)/2, found by Newton's method in l, with the derivatives of the energy W
     ///
     /// ```text
     /// W' = S_33 C_33,   W'' = C_3333 C_33² + 2 S_33 C_33
     /// ```
     ///
-    /// A step that does not lower |W'| is halved. The iteration starts at the stretch of linear elasticity in ln det F.
+    /// A step that does not lower the derivative |W'| is halved. The iteration starts at the stretch of linear
+    /// elasticity in ln det F.
     fn across(&self, e: &Symmetric) -> f64 {
         let slopes = |l: f64| {
             let strain = with_across(e, (2.0 * l).exp_m1() / 2.0);
@@ -76,7 +78,7 @@ fn with_across(e: &Symmetric, z: f64) -> Symmetric {
     Symmetric { z, ..*e }
 }
 
-/// A change of strains, with the given strains 33 at start and end.
+/// A change of strains, with the given components 33 at start and end.
 pub(super) fn completed<T: Number>(
     change: &StrainChange<T>,
     [start, end]: [T; 2],
@@ -90,15 +92,15 @@ pub(super) fn completed<T: Number>(
     }
 }
 
-/// S_ab - C_ab33/C_3333 S_33 from a stress and a tangent at the strain across the plane; in it the round-off of a large
-/// pressure cancels.
+/// Stress S_ab - C_ab33/C_3333 S_33, from a stress and a tangent at the strain across the plane; the round-off of a
+/// large pressure cancels in this difference.
 pub(super) fn condensed_stress<T: Number>(s: &Symmetric<T>, c: &Tangent<T>) -> Symmetric<T> {
     let part = s.z / c.0[2][2];
     let along = |i: usize| c.0[i][2] * part;
     Symmetric::new(s.x - along(0), s.y - along(1), T::default(), s.w - along(3))
 }
 
-/// C_ab - C_a3 C_3b/C_33, without the row across the plane.
+/// Tangent C_ab - C_a3 C_3b/C_33, without the row across the plane.
 pub(super) fn condensed_tangent<T: Number>(c: &Tangent<T>) -> Tangent<T> {
     let over = T::all(1.0) / c.0[2][2];
     Tangent::of(|i, j| match i == 2 || j == 2 {

@@ -1,7 +1,6 @@
 //! J2 plasticity at finite strain: multiplicative, with Hencky's elasticity, isotropic hardening from a table and
 //! linear kinematic hardening. The flow of an increment is computed within a potential of the strain, whose discrete
-//! gradient is the stress (Simo, Comput. Methods Appl. Mech. Engrg. 99, 1992; Ortiz & Stainier, ibid. 171, 1999). See
-//! docs/theory/materials.md, Plasticity.
+//! gradient is the stress (Simo 1992; Ortiz & Stainier 1999). See docs/theory/materials.md, Plasticity.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -33,14 +32,14 @@ use super::{
 pub struct Plastic {
     /// Moduli of the elastic strains.
     pub moduli: SmallStrainModuli,
-    /// Accumulated plastic strain and yield stress (force/length^2), with strains increasing from 0; the last stress is
-    /// constant beyond.
+    /// Accumulated plastic strain and yield stress (force/length^2), with strains increasing from 0; beyond the last
+    /// strain the yield stress is constant.
     pub hardening: Arc<[[f64; 2]]>,
     /// Modulus H_k of the kinematic hardening (force/length^2).
     pub kinematic: f64,
 }
 
-/// Number of components of G - I and of the back strain.
+/// Number of components of the tensor G - I and of the back strain.
 const COMPONENTS: usize = 4;
 
 impl Plastic {
@@ -87,7 +86,7 @@ impl Plastic {
         self.kinematic > 0.0
     }
 
-    /// Number of internal variables: G - I, A and a.
+    /// Number of internal variables: the tensor G - I, the back strain A and the accumulated plastic strain a.
     fn variables(&self) -> usize {
         COMPONENTS * (1 + usize::from(self.has_back_strain())) + 1
     }
@@ -104,7 +103,7 @@ impl Plastic {
         }
     }
 
-    /// Segment of the table with this index: start, yield stress there, slope, and end.
+    /// Segment of the table with the given index: its start, the yield stress at the start, slope, and end.
     fn segment(&self, index: usize) -> (f64, f64, f64, f64) {
         let [start, stress] = self.hardening[index];
         match self.hardening.get(index + 1) {
@@ -125,7 +124,7 @@ impl Plastic {
         stress + slope * (slip - start)
     }
 
-    /// int sigma_y da from an accumulated strain `from`, over `by`, which may be negative
+    /// Integral int sigma_y da from the accumulated plastic strain `from`, over the length `by`, which may be negative
     /// (force/length^2).
     fn hardening_work(&self, from: f64, by: f64) -> f64 {
         if by < 0.0 {
@@ -144,8 +143,8 @@ impl Plastic {
         work
     }
 
-    /// da, and the slope of sigma_y, from q - (3 mu + H_k) da - n² sigma_y(a + da) = 0, which is linear on each
-    /// segment; `square` is n².
+    /// Increment da and the slope of sigma_y, from q - (3 mu + H_k) da - n² sigma_y(a + da) = 0, an equation that is
+    /// linear on each segment; `square` is n².
     fn slip(&self, q: f64, from: f64, square: f64) -> (f64, f64) {
         let stiffness = 3.0 * self.shear() + self.kinematic;
         let mut found = (0.0, 0.0);
@@ -175,13 +174,13 @@ impl Plastic {
         }
     }
 
-    /// xi = 2 mu dev E_h - 2/3 H_k A (force/length^2).
+    /// Stress xi = 2 mu dev E_h - 2/3 H_k A, relative to the back stress (force/length^2).
     fn relative_stress(&self, strain: &Symmetric, state: &PlasticState) -> Symmetric {
         deviator(strain) * (2.0 * self.shear()) - state.back * (2.0 / 3.0 * self.kinematic)
     }
 
     /// Flow from a trial strain with hourglass modes of a square m. The flow minimises the potentials of eq. (2.38) and
-    /// eq. (2.48): (Q, H) of the trial returns to the nearest point sigma_y (w, z) of the yield curve.
+    /// eq. (2.48): the trial stresses (Q, H) return to the nearest point sigma_y (w, z) of the yield curve.
     fn flow(&self, strain: &Symmetric, state: &PlasticState, modes: f64) -> PlasticFlow {
         let xi = self.relative_stress(strain, state);
         let size = contract(&xi, &xi).sqrt();
@@ -245,7 +244,7 @@ impl Plastic {
         }
     }
 
-    /// Angle of the point on the yield curve to which a trial returns, by Newton's method between bounds.
+    /// Angle of the point on the yield curve to which a trial state returns, found by Newton's method between bounds.
     fn yield_angle(&self, trial: [f64; 2], from: f64) -> f64 {
         let (mut low, mut high) = (0.0, FRAC_PI_2);
         let stiffness = 3.0 * self.shear() + self.kinematic;
@@ -271,8 +270,8 @@ impl Plastic {
         angle
     }
 
-    /// Changes of dE_p and of da between two flows from one state, for a change of the trial strain. The changes keep
-    /// their digits if both flow: with p = r Q/(3 mu),
+    /// Changes of the plastic strain increment dE_p and of da between two flows from one state, for a change of the
+    /// trial strain. The changes keep their digits if both trial strains flow: with p = r Q/(3 mu),
     ///
     /// ```text
     /// dQ = 3/2 (xi0 + xi1):dxi/(Q0 + Q1),   dr = 3 mu (dp (Q0 + Q1)/2 - (p0 + p1)/2 dQ)/(Q0 Q1)
@@ -314,7 +313,8 @@ impl Plastic {
             + self.kinematic / 3.0 * contract(&state.back, &state.back)
     }
 
-    /// psi(E) - Phi(E), which is zero unless the strain would flow at once with modes of a square m (force/length^2):
+    /// Difference psi(E) - Phi(E), which is zero unless the strain would flow at once with modes of a square m
+    /// (force/length^2):
     ///
     /// ```text
     /// (T_h + T)/2 : dE_p - H_k/3 (2 A + dE_p):dE_p + (r_h - (1 + k) r_h²/2) m/(3 mu) - int sigma_y da,
@@ -332,8 +332,8 @@ impl Plastic {
             - self.hardening_work(state.slip, flow.slip)
     }
 
-    /// The state after the flow at a strain, eq. (2.41), in the frame V of the new G; the trial strain there is E_e
-    /// rotated:
+    /// The state after the flow at a strain, eq. (2.41), in the frame V of the new tensor G; the trial strain in this
+    /// frame is E_e rotated:
     ///
     /// ```text
     /// K = V X^(-1/2) exp(E_e),  G = K K^T,  R = G^(-1/2) K,  A <- R (A + dE_p) R^T
@@ -373,7 +373,7 @@ impl Plastic {
 /// The internal variables of a point.
 #[derive(Debug, Clone, Copy, Default)]
 struct PlasticState {
-    /// G - I.
+    /// Tensor G - I.
     g: Symmetric,
     /// Back strain A.
     back: Symmetric,
@@ -384,7 +384,7 @@ struct PlasticState {
 /// Trial strain of a point.
 struct Trial {
     v: Symmetric,
-    /// Y = X - I, with which small strains keep their digits.
+    /// Tensor Y = X - I, with which small strains keep their digits.
     y: Symmetric,
     spectrum: Spectrum,
     /// E_h.
@@ -394,10 +394,10 @@ struct Trial {
 /// Flow of an increment.
 #[derive(Default)]
 struct PlasticFlow {
-    /// da = w p + z p_h of eq. (2.49), with p_h = r_h H/(3 mu). As the sum of the parts that flow, da has a round-off
-    /// that does no work.
+    /// Increment da = w p + z p_h of the accumulated plastic strain, eq. (2.49), with p_h = r_h H/(3 mu). Computed as
+    /// the sum of the parts that flow, da has a round-off that does no work.
     slip: f64,
-    /// p = r Q/(3 mu): da for an element without modes; zero without a strain.
+    /// Value p = r Q/(3 mu), which is da for an element without modes; zero without a strain.
     own: f64,
     /// Increment of the plastic strain, dE_p = r xi/(2 mu).
     strain: Symmetric,
@@ -405,17 +405,17 @@ struct PlasticFlow {
     xi: Symmetric,
     /// Equivalent stress Q of the trial strain (force/length^2).
     q: f64,
-    /// r and r_h: the parts that flow of the trial strain and of the amplitudes of the modes.
+    /// Parts r of the trial strain, and r_h of the amplitudes of the modes, that flow.
     parts: [f64; 2],
-    /// Derivatives dr/dQ/Q, dr/dH/H = dr_h/dQ/Q and dr_h/dH/H (length^4/force^2).
+    /// Derivatives dr/dQ/Q, dr/dH/H = dr_h/dQ/Q and dr_h/dH/H of the parts that flow (length^4/force^2).
     slopes: [f64; 3],
 }
 
-/// Share of Q or H in their sum below which it counts as zero; the error of a ratio is the square of the share.
+/// Share of Q or H in their sum below which Q or H counts as zero; the error of a ratio is the square of the share.
 const SMALL_SHARE: f64 = 1e-8;
 
 /// A point of the yield curve and the flow that leads to it, eq. (2.49), with its place c = (w, z), derivatives with
-/// respect to the angle, and (Q, H) of the trial:
+/// respect to the angle, and the trial stresses (Q, H):
 ///
 /// ```text
 /// (Q, H).c - (3 mu + H_k) da - c.c sigma_y(a + da) = 0,   nearest: c'.((Q, H) - sigma_y c) = 0
@@ -429,7 +429,7 @@ struct Return {
     point: [f64; 2],
     first: [f64; 2],
     second: [f64; 2],
-    /// da, and at the end sigma_y (force/length^2) with its slope.
+    /// Increment da, and at its end the yield stress sigma_y (force/length^2) and the slope of sigma_y.
     slip: f64,
     stress: f64,
     slope: f64,
@@ -450,7 +450,7 @@ impl Return {
         }
     }
 
-    /// The excess (Q, H) - sigma_y c of the trial.
+    /// The excess (Q, H) - sigma_y c of the trial stresses over the yield curve.
     fn beyond(&self) -> [f64; 2] {
         [0, 1].map(|k| self.trial[k] - self.stress * self.point[k])
     }
@@ -505,12 +505,12 @@ fn deviator(a: &Symmetric) -> Symmetric {
 }
 
 /// The potential Phi(E; z0) of an increment: stored energy plus work of hardening after the flow. With hourglass modes
-/// the potential is that of eq. (2.48) without the elastic energy of the modes.
+/// eq. (2.48) gives the potential, without the elastic energy of the modes.
 #[derive(Clone, Copy)]
 struct Potential<'a> {
     law: &'a Plastic,
     state: PlasticState,
-    /// m, the part of the modes in q² (force^2/length^4).
+    /// Square m: the part of the modes in q² (force^2/length^4).
     modes: f64,
 }
 
@@ -528,7 +528,7 @@ impl<'a> Potential<'a> {
     }
 
     /// Change of the potential between two strains with their squares m of the modes; `by` is the difference of m. Here
-    /// dp is the change of dE_p, and k = H_k/(3 mu):
+    /// dp is the change of the plastic strain increment dE_p, and k = H_k/(3 mu):
     ///
     /// ```text
     /// (T0 + T1)/2 : (dE_h - dp) + H_k/3 (2 A + dE_p0 + dE_p1):dp + int sigma_y da from a + da0 to a + da1
@@ -587,12 +587,12 @@ impl Hyperelastic for Potential<'_> {
         self.law.stored(&zero, &self.state) + self.energy_change(&change)
     }
 
-    /// Phi(E1) - Phi(E0), eq. (2.40).
+    /// Change of the potential, Phi(E1) - Phi(E0), eq. (2.40).
     fn energy_change(&self, change: &StrainChange) -> f64 {
         self.change(change, self.modes, 0.0)
     }
 
-    /// S = V (D ln(X) : T) V, eq. (2.39) (force/length^2).
+    /// Stress S = V (D ln(X) : T) V, eq. (2.39) (force/length^2).
     fn stress(&self, e: &Symmetric) -> Symmetric {
         let trial = self.law.trial(e, &self.state);
         let flow = self.flow(&trial);
@@ -626,7 +626,7 @@ pub struct PlanePlastic {
 
 /// Largest number of steps of Newton's method for the angle of a return.
 const MOST_STEPS: usize = 60;
-/// Relative change of the angle up to which it is round-off.
+/// Relative change of the angle up to which the change is round-off.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 impl PlanePlastic {
@@ -655,15 +655,15 @@ impl PlanePlastic {
         Symmetric { z, ..*e }
     }
 
-    /// Strains with their components across the plane, with modes of the given squares m.
+    /// Strains with their components across the plane, for modes of the given squares m.
     fn complete_change(&self, change: &StrainChange, z0: &[f64], modes: [f64; 2]) -> StrainChange {
         let ends = [(modes[0], change.start), (modes[1], change.end)];
         let across = ends.map(|(modes, e)| self.complete(self.potential(z0, modes), &e).z);
         completed(change, across)
     }
 
-    /// Energy D dissipated in an increment that ends at a strain, or in the energy-momentum form goes from one strain
-    /// to another, with modes of the given squares m.
+    /// Energy D dissipated in an increment that ends at a strain (in the energy-momentum form: that leads from one
+    /// strain to another), with modes of the given squares m.
     fn dissipated(&self, strains: &Strains, z0: &[f64], modes: [f64; 2]) -> f64 {
         let state = self.law.state(z0);
         let released = match strains {
@@ -679,8 +679,8 @@ impl PlanePlastic {
         released + self.law.hardening_work(state.slip, slip)
     }
 
-    /// Writes the state at the end of the strains, with modes of a square m, and returns the strain there with all
-    /// components.
+    /// Writes the state at the end of the strains, with modes of a square m, and returns the strain at this end with
+    /// all components.
     fn write_updated(
         &self,
         strains: &Strains,

@@ -1,6 +1,5 @@
 //! Compressible hyperelastic materials of Mooney-Rivlin and Yeoh: polynomials of the invariants of the distortion, and
-//! of the volume (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6; Yeoh, Rubber Chem. Technol. 63, 1990). See
-//! docs/theory/materials.md.
+//! of the volume (Holzapfel, Nonlinear Solid Mechanics, sections 6.4 to 6.6; Yeoh 1990). See docs/theory/materials.md.
 
 use super::invariants::{InvariantEnergy, VolumeEnergy};
 use super::number::Number;
@@ -8,7 +7,7 @@ use super::{LawCard, NeoHooke, SmallStrainModuli};
 
 /// Hyperelastic material, `*HYPERELASTIC` with `MOONEY-RIVLIN` or `YEOH`.
 ///
-/// In terms of x and y of [`InvariantEnergy`]:
+/// In terms of the invariants x and y of [`InvariantEnergy`] the energy is:
 ///
 /// ```text
 /// energy   W = w(x) + C01 y + U(J),   w = C10 x + C20 x² + C30 x³,   U = sum_i (J - 1)^2i/D_i
@@ -21,8 +20,8 @@ pub struct Polynomial {
     pub shape: [f64; 3],
     /// Factor C01 of y (force/length^2).
     pub c01: f64,
-    /// D1, D2, D3 of (J - 1)², (J - 1)^4, (J - 1)^6 (length^2/force); the first is positive, and a zero means that
-    /// there is no such term.
+    /// Constants D1, D2, D3 of the terms (J - 1)², (J - 1)^4, (J - 1)^6 (length^2/force); D1 is positive, and a
+    /// constant of zero means that there is no such term.
     pub d: [f64; 3],
 }
 
@@ -51,7 +50,7 @@ impl Polynomial {
         }]
     }
 
-    /// Moduli from mu = 2 (C10 + C01) and K = 2/D1.
+    /// Moduli at small strains, from mu = 2 (C10 + C01) and K = 2/D1.
     pub fn small_strain(&self) -> SmallStrainModuli {
         SmallStrainModuli::of_shear_and_bulk(2.0 * (self.shape[0] + self.c01), 2.0 / self.d[0])
     }

@@ -26,7 +26,7 @@ pub struct SaintVenantKirchhoff {
 }
 
 impl SaintVenantKirchhoff {
-    /// Moduli at small strains, which are those at all strains.
+    /// Moduli at small strains, which are the moduli at all strains.
     pub fn small_strain(&self) -> SmallStrainModuli {
         SmallStrainModuli {
             young: self.young,
@@ -48,7 +48,7 @@ impl SaintVenantKirchhoff {
         }
     }
 
-    /// The law in the plane. Plane stress only changes the constants of the formulas: without S_33
+    /// The law in the plane. Plane stress only changes the constants of the formulas; without the stress S_33 they are
     ///
     /// ```text
     /// E_33 = -nu/(1 - nu) (E_11 + E_22),   lambda' = 2 lambda mu/(lambda + 2 mu) = E nu/(1 - nu²)
@@ -85,15 +85,15 @@ impl SaintVenantKirchhoff {
 /// St. Venant-Kirchhoff material in plane stress, in plane strain or in a body of revolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlaneSaintVenantKirchhoff {
-    /// lambda + 2 mu = C_1111 (force/length^2).
+    /// Modulus lambda + 2 mu = C_1111 (force/length^2).
     diagonal: f64,
-    /// lambda = C_1122 (force/length^2).
+    /// Modulus lambda = C_1122 (force/length^2).
     mixed: f64,
-    /// mu = C_1212 (force/length^2).
+    /// Modulus mu = C_1212 (force/length^2).
     shear: f64,
     /// Factor in E_33 = -contraction (E_11 + E_22), for plane stress.
     contraction: f64,
-    /// Factor in S_33 = across (S_11 + S_22), without E_33.
+    /// Factor in S_33 = across (S_11 + S_22), for strains without E_33.
     across: f64,
     is_plane_stress: bool,
 }
@@ -106,7 +106,7 @@ impl PlaneSaintVenantKirchhoff {
 }
 
 impl<T: Number, const HOOP: bool> Hyperelastic<T, HOOP> for PlaneSaintVenantKirchhoff {
-    /// W = E:C:E/2 = S:E/2, eq. (2.13).
+    /// Stored energy W = E:C:E/2 = S:E/2, eq. (2.13).
     #[inline(always)]
     fn energy(&self, e: &Symmetric<T>) -> T {
         let s = Hyperelastic::<T, HOOP>::stress(self, e);
@@ -117,14 +117,14 @@ impl<T: Number, const HOOP: bool> Hyperelastic<T, HOOP> for PlaneSaintVenantKirc
         }
     }
 
-    /// W1 - W0 = S(E_m):(E1 - E0).
+    /// Change of the stored energy, W1 - W0 = S(E_m):(E1 - E0).
     #[inline(always)]
     fn energy_change(&self, change: &StrainChange<T>) -> T {
         let s = Hyperelastic::<T, HOOP>::stress(self, &change.mean);
         s.contract::<HOOP>(&change.change())
     }
 
-    /// S = lambda tr(E) I + 2 mu E = C:E, eq. (2.13).
+    /// Stress S = lambda tr(E) I + 2 mu E = C:E, eq. (2.13).
     #[inline(always)]
     fn stress(&self, e: &Symmetric<T>) -> Symmetric<T> {
         let (x, y) = (
@@ -165,7 +165,7 @@ impl<T: Number, const HOOP: bool> Hyperelastic<T, HOOP> for PlaneSaintVenantKirc
         StrainMeasure::Green
     }
 
-    /// S(E_m) = (S0 + S1)/2, eq. (4.8) (Simo & Tarnow 1992): the discrete gradient of a quadratic energy.
+    /// Stress S(E_m) = (S0 + S1)/2, eq. (4.8) (Simo & Tarnow 1992): the discrete gradient of a quadratic energy.
     #[inline(always)]
     fn mean_stress(&self, change: &StrainChange<T>) -> Symmetric<T> {
         Hyperelastic::<T, HOOP>::stress(self, &change.mean)

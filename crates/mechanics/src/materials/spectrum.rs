@@ -3,7 +3,8 @@
 
 use super::symmetric::{Symmetric, Tangent};
 
-/// Principal values of a symmetric tensor, the first two in the plane, and the direction (cos, sin) of the first one.
+/// Principal values of a symmetric tensor, the first two in the plane, and the direction (cos, sin) of the first
+/// principal axis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Spectrum {
     pub values: [f64; 3],
@@ -26,8 +27,8 @@ impl Spectrum {
         self.map(|y| y.ln_1p() / 2.0)
     }
 
-    /// C = dS/dE (force/length^2) of S = (D ln C) : T; T(E_h) depends on the logarithmic strain, and `change` gives its
-    /// change for a change of E_h:
+    /// Tangent C = dS/dE (force/length^2) of S = (D ln C) : T. The stress T(E_h) depends on the logarithmic strain, and
+    /// `change` gives the change of T for a change of E_h:
     ///
     /// ```text
     /// D ln : (dT/dE_h) : D ln + 2 D² ln : T,   column by column
@@ -49,7 +50,7 @@ impl Spectrum {
         }
     }
 
-    /// The tensor whose principal values are a function of those of this tensor.
+    /// The tensor whose principal values are a function of the principal values of the given tensor.
     pub fn map(&self, f: impl Fn(f64) -> f64) -> Symmetric {
         let [a, b, c] = self.values.map(f);
         self.back(&Symmetric::new(a, b, c, 0.0))
@@ -77,7 +78,7 @@ impl Spectrum {
         )
     }
 
-    /// Derivative of ln(I + Y) in the direction A: A_ij ln[x_i, x_j] in the principal frame.
+    /// Derivative of ln(I + Y) in the direction A, which has the components A_ij ln[x_i, x_j] in the principal frame.
     pub fn log_derivative(&self, a: &Symmetric) -> Symmetric {
         let (a, [y1, y2, y3]) = (self.to(a), self.values);
         self.back(&Symmetric::new(
@@ -88,8 +89,8 @@ impl Spectrum {
         ))
     }
 
-    /// Second derivative of ln(I + Y) in the directions A and B:
-    /// sum over k of (A_ik B_kj + B_ik A_kj) ln[x_i, x_k, x_j] in the principal frame.
+    /// Second derivative of ln(I + Y) in the directions A and B, whose components in the principal frame are the sums
+    /// over k of (A_ik B_kj + B_ik A_kj) ln[x_i, x_k, x_j].
     pub fn second_derivative(&self, a: &Symmetric, b: &Symmetric) -> Symmetric {
         let ([a, b], [y1, y2, y3]) = ([self.to(a), self.to(b)], self.values);
         let same = |y: f64| -0.5 / ((1.0 + y) * (1.0 + y));
@@ -114,13 +115,13 @@ pub(super) fn first_difference(y1: f64, y2: f64) -> f64 {
     }
 }
 
-/// Absolute d below which the second difference is computed as a series.
+/// Absolute value of d below which [`second_difference`] is computed as a series.
 const NEAR: f64 = 0.1;
-/// Number of terms of the series; the last one is round-off.
+/// Number of terms of the series of [`second_difference`]; the last term is round-off.
 const TERMS: i32 = 17;
 
-/// Divided difference ln[x_1, x_1, x_2] = -(1 - ln(1 + d)/d)/(d x_1²) with d = (x_2 - x_1)/x_1; near d = 0 it is the
-/// series -sum (-d)^k/(k + 2).
+/// Divided difference ln[x_1, x_1, x_2] = -(1 - ln(1 + d)/d)/(d x_1²) with d = (x_2 - x_1)/x_1; near d = 0 the
+/// difference is the series -sum (-d)^k/(k + 2).
 fn second_difference(y1: f64, y2: f64) -> f64 {
     let x1 = 1.0 + y1;
     let d = (y2 - y1) / x1;
@@ -139,7 +140,7 @@ pub(super) fn root(g: &Symmetric) -> Symmetric {
     Spectrum::new(g).map(|g| g / (1.0 + (1.0 + g).sqrt()))
 }
 
-/// The product V E V.
+/// The product V E V of symmetric tensors.
 pub(super) fn between(v: &Symmetric, e: &Symmetric) -> Symmetric {
     let (v2, e2) = (v.in_plane(), e.in_plane());
     let product = v2 * e2 * v2;
@@ -156,8 +157,8 @@ const SERIES: f64 = 0.25;
 /// Number of terms of the series in [`log_change`].
 const SERIES_TERMS: usize = 30;
 
-/// (ln(I + Y1) - ln(I + Y0))/2 from dY = Y1 - Y0, with round-off relative to dY. In the plane, m is the half trace and
-/// D the deviator of X = I + Y, and d² = D:D/2:
+/// Change (ln(I + Y1) - ln(I + Y0))/2 of the logarithmic strain, from dY = Y1 - Y0, with round-off relative to dY. In
+/// the plane, m is the half trace and D the deviator of X = I + Y, and d² = D:D/2:
 ///
 /// ```text
 /// ln X = ln(det X)/2 I + c D,   c = g(w)/m,   g = artanh(sqrt w)/sqrt w = sum w^k/(2 k + 1),   w = d²/m²

@@ -1,6 +1,6 @@
-//! Strains at which a law is evaluated: one strain, or those at the start and at the end of an increment. Also the
-//! measure in which strains of an element are added, and the state across the plane. See docs/theory/materials.md and
-//! docs/theory/time.md.
+//! Strains at which a law is evaluated: one strain, or the strains at the start and at the end of an increment. Also
+//! the measure in which strains of an element are added, and the state across the plane. See docs/theory/materials.md
+//! and docs/theory/time.md.
 
 use super::number::Number;
 use super::symmetric::Symmetric;
@@ -32,8 +32,8 @@ pub enum Strains<T = f64> {
     Between(StrainChange<T>),
 }
 
-/// The strains at the start and at the end of an increment, their mean, and half their change, which keeps its own
-/// digits.
+/// The strains at the start and at the end of an increment, their mean, and half their change, which has its own digits
+/// and is not a difference.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StrainChange<T = f64> {
     /// E0
@@ -94,7 +94,7 @@ impl<T: Number> Strains<T> {
         Strains::Between(StrainChange::between(e0, e1))
     }
 
-    /// Strains of all elements, all of the kind of the first element's.
+    /// Strains of all elements: all single strains or all changes, like the strains of the first element.
     #[inline(always)]
     pub fn of_lanes(of: impl Fn(usize) -> Strains) -> Self {
         let end = Symmetric::of_lanes(|lane| of(lane).end());

@@ -1,5 +1,5 @@
-//! Symmetric tensors whose components 13 and 23 are zero, as in the plane and in bodies of revolution, and their
-//! products as matrices that act on strains (11, 22, 33, 2*12). See docs/theory/materials.md.
+//! Symmetric tensors whose components 13 and 23 are zero, as in the plane and in bodies of revolution. Their products
+//! are matrices that act on strains (11, 22, 33, 2*12). See docs/theory/materials.md.
 //!
 //! With `HOOP` the component 33 is used. Without `HOOP` the strain 33 is zero, as in plane strain, and formulas omit
 //! its products.
@@ -57,7 +57,7 @@ impl<T: Number> Symmetric<T> {
         Symmetric::new(x, y, of(self.z, b.z), of(self.w, b.w))
     }
 
-    /// The tensor times a number.
+    /// The product of the tensor and a number.
     #[inline(always)]
     pub fn times(&self, factor: T) -> Self {
         self.map(|a| a * factor)
@@ -112,7 +112,7 @@ impl Symmetric {
         self.components().into()
     }
 
-    /// The tensor with these components in the plane and 33.
+    /// The tensor with the given components in the plane and the component 33.
     pub fn of_plane(a: &Matrix2<f64>, z: f64) -> Self {
         Symmetric::new(a.m11, a.m22, z, a.m12)
     }
@@ -217,7 +217,7 @@ pub const IDENTITY: Symmetric = Symmetric {
     w: 0.0,
 };
 
-/// A:B of two symmetric tensors.
+/// The product A:B of two symmetric tensors.
 pub fn contract(a: &Symmetric, b: &Symmetric) -> f64 {
     a.contract::<true>(b)
 }
@@ -299,7 +299,7 @@ fn each_element<T: Number, V: Default>(of: impl Fn(usize) -> V) -> [V; LANES] {
     })
 }
 
-/// A matrix from its entries, without a loop: entries that are not used then cost nothing.
+/// A matrix from its entries, written without a loop, so that unused entries need no time.
 #[inline(always)]
 fn square<T>(at: impl Fn(usize, usize) -> T) -> [[T; 4]; 4] {
     [
@@ -310,14 +310,14 @@ fn square<T>(at: impl Fn(usize, usize) -> T) -> [[T; 4]; 4] {
     ]
 }
 
-/// A x B, row by row: it maps E to (B:E) A.
+/// The matrix A x B, row by row, which maps E to (B:E) A.
 #[inline(always)]
 pub fn dyad<T: Number>(a: &Symmetric<T>, b: &Symmetric<T>) -> [[T; 4]; 4] {
     let (a, b) = (a.components(), b.components());
     square(|i, j| a[i] * b[j])
 }
 
-/// I x A + A x I, row by row.
+/// The matrix I x A + A x I, row by row.
 #[inline(always)]
 pub fn with_identity<T: Number>(a: &Symmetric<T>) -> [[T; 4]; 4] {
     let a = a.components();
@@ -329,7 +329,7 @@ pub fn with_identity<T: Number>(a: &Symmetric<T>) -> [[T; 4]; 4] {
     })
 }
 
-/// A o A, row by row: it maps E to A E A.
+/// The matrix A o A, row by row, which maps E to A E A.
 #[inline(always)]
 pub fn product<T: Number>(a: &Symmetric<T>) -> [[T; 4]; 4] {
     let Symmetric { x, y, z, w } = *a;

@@ -1,4 +1,4 @@
-//! Viscosity of a material (`*DAMPING, BETA=`): a stress, added to that of the law, that depends on the rates of
+//! Viscosity of a material (`*DAMPING, BETA=`): a stress, added to the stress of the law, that depends on the rates of
 //! distortion and volume. See docs/theory/time.md, Damping.
 
 use super::number::Number;
@@ -16,9 +16,10 @@ use super::{Across, Plane, SaintVenantKirchhoff, SmallStrainModuli, StressAtPoin
 /// S_d : dE >= 0                                                what it dissipates
 /// ```
 ///
-/// D is the mean of the cofactors of C on the straight path from C0 to C1, and so is positive definite. mu and lambda
-/// are the moduli at small strains. With the part dJ/2 G (in the plane) of the first term, the stress splits into one
-/// of distortion and one of volume; each depends on only one of the two moduli.
+/// The tensor D is the mean of the cofactors of C on the straight path from C0 to C1, so D is positive definite. Here
+/// mu and lambda are the moduli at small strains. With the part dJ/2 G (in the plane) of the first term, the stress
+/// splits into a stress of distortion and a stress of volume. The stress of distortion and the stress of volume depend
+/// on only one of the two moduli each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscosity {
     /// Viscosity of distortion, 2 beta mu (force time/length^2).
@@ -27,7 +28,7 @@ pub struct Viscosity {
     volume: f64,
 }
 
-/// G and 1/J_m of eq. (4.17) between two strains.
+/// Tensor G and factor 1/J_m of eq. (4.17) between two strains.
 #[inline(always)]
 fn halfway<T: Number, const HOOP: bool>(change: &StrainChange<T>) -> (Symmetric<T>, T) {
     let ratio = |e: Symmetric<T>| {
@@ -53,7 +54,7 @@ impl Viscosity {
         (beta > 0.0).then(|| Self::new(beta, moduli, plane))
     }
 
-    /// Viscosity with the factor `beta` (time) for a material with these moduli at small strains.
+    /// Viscosity with the factor `beta` (time) for a material with the given moduli at small strains.
     pub fn new(beta: f64, moduli: SmallStrainModuli, plane: Plane) -> Self {
         let SmallStrainModuli { young, poisson } = moduli;
         let (lambda, mu) = SaintVenantKirchhoff { young, poisson }
@@ -67,17 +68,17 @@ impl Viscosity {
 }
 
 impl Viscosity {
-    /// Tangent for a zero change of the strains (force time/length^2).
+    /// Tangent of the viscous stress at a zero change of the strains (force time/length^2).
     pub fn initial_tangent(&self) -> Tangent {
         let none = Strains::Between(StrainChange::default());
         StressAtPoints::<f64, true>::tangent_at(self, 0, &none)
     }
 }
 
-/// Stresses are multiplied by the length of the increment (force time/length^2). The viscous stresses are zero if the
-/// strain does not change; nothing is stored, and there is no stress across the plane.
+/// The viscous stresses are multiplied by the length of the increment (force time/length^2). The viscous stresses are
+/// zero if the strain does not change; they store no energy, and there is no stress across the plane.
 impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
-    /// S_d dt, eq. (4.17).
+    /// Viscous stress times the length of the increment, S_d dt, eq. (4.17).
     #[inline(always)]
     fn stress_at(&self, _point: usize, strains: &Strains<T>) -> Symmetric<T> {
         let Strains::Between(change) = strains else {
@@ -101,8 +102,8 @@ impl<T: Number, const HOOP: bool> StressAtPoints<T, HOOP> for Viscosity {
         gdeg.with(&g, |gdeg, g| (gdeg * self.shape + dj * g) * inverse)
     }
 
-    /// 2 V of eq. (4.19), which is positive definite. The tangent omits the change of G and J_m, which is of first
-    /// order in dE.
+    /// Tangent 2 V of eq. (4.19), which is positive definite. The tangent omits the change of G and J_m, which is of
+    /// first order in dE.
     #[inline(always)]
     fn tangent_at(&self, _point: usize, strains: &Strains<T>) -> Tangent<T> {
         let Strains::Between(change) = strains else {
@@ -138,7 +139,7 @@ mod tests {
 
     const BETA: f64 = 0.3;
 
-    /// Viscosity in plane strain with these moduli of shear and volume.
+    /// Viscosity in plane strain with the given moduli of shear and volume.
     fn viscosity(mu: f64, bulk: f64) -> Viscosity {
         let moduli = SmallStrainModuli {
             young: 9.0 * bulk * mu / (3.0 * bulk + mu),

@@ -1,17 +1,17 @@
-//! The yield curve of a metal whose element has hourglass modes, eq. (2.47). The curve limits the parts w and z of
-//! sigma_y that strain and modes use:
+//! The yield curve of a metal whose element has hourglass modes, eq. (2.47). The curve limits the parts w and z of the
+//! yield stress sigma_y that strain and modes use:
 //!
 //! ```text
 //! z <= sqrt(3)/2 ((1 - e) (1 - w²) + e sqrt(1 - w²)),   w = cos t
 //! ```
 
-/// sqrt(3)/2: mean absolute value, relative to the root mean square, of a stress that is linear
-/// over a section.
+/// Ratio sqrt(3)/2 of the mean absolute value to the root mean square, of a stress that is linear over a section with
+/// mean zero.
 const FULL_SECTION: f64 = 0.866_025_403_784_438_6;
 /// e.
 const ROUNDED: f64 = 0.5;
 
-/// Whether the stress sizes Q and H are within the curve for a yield stress.
+/// Whether the stress sizes Q (strain) and H (modes) are within the curve for a yield stress.
 pub(super) fn contains([q, h]: [f64; 2], stress: f64) -> bool {
     let rest = (stress - q) * (stress + q);
     q <= stress

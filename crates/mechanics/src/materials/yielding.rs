@@ -31,7 +31,7 @@ pub fn plastic(z: &[f64]) -> Symmetric {
     Symmetric::new(z[0], z[1], 0.0, z[2])
 }
 
-/// A:B over the components that flow.
+/// Product A:B over the components that flow.
 fn in_plane(a: &Symmetric, b: &Symmetric) -> f64 {
     a.contract::<false>(b)
 }
@@ -41,7 +41,7 @@ struct Returned {
     stress: Symmetric,
     /// Algorithmic tangent dS/dE.
     tangent: Tangent,
-    /// Increments dZ and da of the plastic variables.
+    /// Increments dZ of the plastic strain and da of the accumulated plastic strain.
     flow: Symmetric,
     slip: f64,
 }
@@ -170,7 +170,7 @@ impl Flow for Yielding {
         elastic * elastic * self.g / 2.0 + self.hardening_energy(z[3])
     }
 
-    /// D = S1:dZ - (U1 - U0).
+    /// Dissipated energy D = S1:dZ - (U1 - U0).
     fn dissipation(&self, strains: &Strains, z0: &[f64]) -> f64 {
         let end = self.returned(&strains.end(), z0);
         let stored = self.hardening_energy(z0[3] + end.slip) - self.hardening_energy(z0[3]);

@@ -33,7 +33,7 @@ pub enum Curve {
     /// Smooth steps between points (time, value), with zero rate and zero second derivative at each
     /// point.
     SmoothStep(Vec<(f64, f64)>),
-    /// `base` up to the time `start`, and `base + signal(t - start)` from there on.
+    /// `base` up to the time `start`, and `base + signal(t - start)` from this time on.
     Signal {
         /// Time at which the signal begins.
         start: f64,
@@ -76,15 +76,15 @@ impl Amplitude {
         self.value_and_rate(t)[0]
     }
 
-    /// Derivative of the amplitude at `t`. Where the derivative jumps at a point of a table, the
-    /// result is that of the interval before; at the first point and at the start of a signal it is
-    /// that after.
+    /// Derivative of the amplitude at `t`. Where the derivative jumps at a point of a table, the result is the
+    /// derivative in the interval before the jump. At the first point and at the start of a signal the result is the
+    /// derivative after the jump.
     pub fn rate(&self, t: f64) -> f64 {
         self.value_and_rate(t)[1]
     }
 
-    /// Derivative of the amplitude at `t`; where it jumps, the result is that of the interval
-    /// after.
+    /// Derivative of the amplitude at `t`; where the derivative jumps, the result is the derivative in the interval
+    /// after the jump.
     pub fn rate_after(&self, t: f64) -> f64 {
         match &self.curve {
             Curve::Linear(points) => rate_after_point(points, t, |x| [x, 1.0]),
@@ -302,8 +302,8 @@ fn smooth_step(x: f64) -> [f64; 2] {
     ]
 }
 
-/// Value and rate at `t` of a table that is constant outside. Between two points the values of the
-/// table follow `step`, which gives the part of the difference and its derivative at `0 <= x <= 1`.
+/// Value and rate at `t` of a table that is constant outside. Between two points the values of the table follow `step`,
+/// which gives the covered part of the difference, and the derivative of this part, at `0 <= x <= 1`.
 fn in_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let (first, last) = (points[0], points[points.len() - 1]);
     let t = at_point(points, t);
@@ -320,8 +320,8 @@ fn in_table(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> [f
     [value, (q.1 - p.1) / (q.0 - p.0) * slope]
 }
 
-/// Slope of a table in the interval that contains `t` or begins at it; zero before the first point, and from the last
-/// one on.
+/// Slope of a table in the interval that contains `t` or begins at `t`; zero before the first point and from the last
+/// point on.
 fn rate_after_point(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2]) -> f64 {
     let t = at_point(points, t);
     let next = points.partition_point(|p| p.0 <= t);
@@ -333,8 +333,8 @@ fn rate_after_point(points: &[(f64, f64)], t: f64, step: impl Fn(f64) -> [f64; 2
     (q.1 - p.1) / (q.0 - p.0) * slope
 }
 
-/// The time of the table point that equals `t` up to round-off; without such a point `t` itself. On which side of a
-/// kink an increment ends therefore does not depend on the unit of time.
+/// The time of the table point that equals `t` up to round-off; without such a point `t` itself. So the side of a kink
+/// on which an increment ends does not depend on the unit of time.
 fn at_point(points: &[(f64, f64)], t: f64) -> f64 {
     let next = points.partition_point(|p| p.0 < t);
     let around = &points[next.saturating_sub(1)..points.len().min(next + 1)];

@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 pub struct Connector {
     /// Element number in the deck.
     pub label: u64,
-    /// The one node of the connector, whose other end is the ground, or its two nodes.
+    /// The two nodes of the connector, or its one node if the other end is the ground.
     pub nodes: SmallVec<[usize; 2]>,
     /// Direction in which the elongation is measured.
     pub direction: ConnectorDirection,
@@ -46,34 +46,33 @@ impl Connector {
 /// Direction in which the elongation of a connector is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ConnectorDirection {
-    /// Along the line between the nodes: their distance less that in the reference configuration; the line turns with
-    /// the nodes.
+    /// Along the line between the nodes, which turns with the nodes: their distance less their distance in the
+    /// reference configuration.
     Line,
-    /// The displacement of the first node in the first direction, a unit vector, less that of the second node
-    /// in the second.
+    /// The displacement of the first node in the first direction, a unit vector, less the displacement of the second
+    /// node in the second direction.
     Fixed([[f64; 2]; 2]),
-    /// The rotation of the rigid body whose reference node is the first node, less that of the body of the second node;
-    /// the force is a moment.
+    /// The rotation of the rigid body whose reference node is the first node, less the rotation of the body of the
+    /// second node; the force is a moment.
     Angle,
 }
 
 /// Quantity on which the force of a connector depends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConnectorLaw {
-    /// A spring: the force depends on the elongation and its work is stored.
+    /// A spring: the force depends on the elongation, and the work of the force is stored.
     Spring,
-    /// A dashpot: the force depends on the rate of the elongation and its work is dissipated.
+    /// A dashpot: the force depends on the rate of the elongation, and the work of the force is dissipated.
     Dashpot,
 }
 
-/// Force as a function of the elongation (length) or its rate (length/time); between angles moment as a function of the
-/// angle or its rate (1/time).
+/// Force as a function of the elongation (length) or its rate (length/time); between angles, moment as a function of
+/// the angle or its rate (1/time).
 #[derive(Debug, Clone, PartialEq)]
 pub enum ForceCurve {
     /// Proportional, with the factor k (force/length) or c (force time/length).
     Linear(f64),
-    /// Piecewise linear between points (elongation or rate, force) in increasing order; constant
-    /// beyond them.
+    /// Piecewise linear between points (elongation or rate, force) in increasing order; constant beyond the points.
     Table(Vec<[f64; 2]>),
 }
 
@@ -97,7 +96,7 @@ impl ForceCurve {
         }
     }
 
-    /// Slope dF/dx; at a point of the table that to its right.
+    /// Slope dF/dx; at a point of the table the slope to the right of the point.
     pub fn slope(&self, x: f64) -> f64 {
         match self {
             ForceCurve::Linear(k) => *k,
@@ -153,7 +152,7 @@ impl ForceCurve {
         }
     }
 
-    /// d mean(a, b)/db = (F(b) - mean)/(b - a); half the slope if a = b.
+    /// Derivative d mean(a, b)/db = (F(b) - mean)/(b - a) of the mean of F; half the slope of F if a = b.
     pub fn mean_slope(&self, a: f64, b: f64) -> f64 {
         let slope = (self.at(b) - self.mean(a, b)) / (b - a);
         match slope.is_finite() {

@@ -25,7 +25,7 @@ pub struct Interaction {
     pub heat: Option<Heat>,
 }
 
-/// Part of the work of friction that becomes heat, and the surfaces that it heats.
+/// Part of the work of friction that becomes heat, and the surfaces that this heat warms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Heat {
     /// Part of the work that becomes heat.
@@ -39,8 +39,8 @@ pub struct Heat {
 pub struct Wear {
     /// Depth divided by the product of pressure and sliding path, k/H (length^2/force).
     pub rate: f64,
-    /// Whether the depth is instead divided by the work of friction, which is mu times this
-    /// product.
+    /// Whether the depth is divided by the work of friction per area instead of the product of pressure and sliding
+    /// path; this work is mu times the product.
     pub by_friction: bool,
 }
 
@@ -50,7 +50,7 @@ pub enum ContactFormulation {
     /// Every slave node is kept out.
     #[default]
     NodeToSegment,
-    /// For each slave node a mean over points of the slave faces is kept out.
+    /// For each slave node a mean gap over points of the slave faces is kept at zero or above.
     SurfaceToSurface,
 }
 
@@ -85,7 +85,7 @@ pub struct Contact {
     pub adjust: Option<Adjust>,
     /// Slave nodes that do not take part in the contact (indices, increasing).
     pub left_out: Vec<usize>,
-    /// Whether this is general contact that presses out the overlap of bodies in the first step.
+    /// Whether the contact is general contact that removes the overlap of bodies in the first step.
     pub is_interference_fit: bool,
     /// Place in the deck, for messages.
     pub span: Span,
@@ -96,7 +96,7 @@ pub struct Contact {
 pub enum Smoothing {
     /// Straight faces, as meshed.
     Straight,
-    /// Curved faces, from the turns of the reference configuration; some of them are circles about
+    /// Curved faces, whose shape follows from the turns of the reference configuration; some faces lie on circles about
     /// given centres.
     Curved(Vec<Circle>),
 }
@@ -120,11 +120,11 @@ pub struct Circle {
 /// strain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Adjust {
-    /// Nodes near the surface of the master body, inside or above it.
+    /// Nodes near the surface of the master body, inside or above this surface.
     Within(Reach),
-    /// Nodes of the node set with this index.
+    /// Nodes of the node set with the given index.
     Nodes(usize),
-    /// Nodes near the surface, which are moved to a clearance above it (length).
+    /// Nodes near the surface, which are moved to a clearance above the surface (length).
     Clearance(f64),
 }
 
@@ -151,7 +151,7 @@ impl Adjust {
 }
 
 impl Contact {
-    /// A contact of two surfaces in which all slave nodes take part and none is moved.
+    /// A contact of two surfaces in which all slave nodes take part and no node is moved.
     pub fn new([slave, master]: [usize; 2], interaction: Interaction) -> Self {
         Contact {
             slave,
@@ -203,8 +203,8 @@ pub struct RigidProfile {
     pub segments: Vec<Segment>,
     /// The arcs of which some segments are chords, in the order of the segments.
     pub arcs: Vec<CircleArc>,
-    /// Node at the centre of a round body's outline: all segments are chords of arcs about it, joined all the way
-    /// round, with the body inside.
+    /// Node at the centre of a round body's outline: all segments are chords of arcs about this node, which form a
+    /// closed circle with the body inside.
     pub centre: Option<usize>,
 }
 
@@ -236,7 +236,7 @@ impl CircleArc {
 pub struct Disc {
     /// Node at the centre of the disc.
     pub centre: usize,
-    /// A node on the circle of the disc, which turns with it.
+    /// A node on the circle of the disc, which turns with the disc.
     pub arm: usize,
     /// Radius (length).
     pub radius: f64,
@@ -283,27 +283,27 @@ impl Surface {
     }
 }
 
-/// Two nodes at one place that move together while their bodies may rotate (`*MPC`, PIN); at least one of them belongs
-/// to a rigid body.
+/// Two nodes at one place that move together while their bodies may rotate (`*MPC`, PIN); at least one of the two nodes
+/// belongs to a rigid body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Hinge {
     /// The nodes.
     pub nodes: [usize; 2],
 }
 
-/// A dof that follows others at all times: u_dof = sum c_k u_k, eq. (3.8).
+/// A dof that follows other dofs at all times: u_dof = sum c_k u_k, eq. (3.8).
 ///
-/// The u_k are free or prescribed; none of them follows other dofs.
+/// The dofs u_k are free or prescribed; no u_k follows other dofs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equation {
     /// The dof that is eliminated, `2 node + direction`.
     pub dof: usize,
-    /// Dofs that it follows, each once, and their coefficients c_k (dimensionless).
+    /// Dofs that the eliminated dof follows, each once, and their coefficients c_k (dimensionless).
     pub terms: Vec<(usize, f64)>,
 }
 
 impl Equation {
-    /// Sum of terms of an equation, relative to their sizes, up to which it counts as zero.
+    /// Sum of terms of an equation, relative to the sizes of the terms, up to which the sum counts as zero.
     pub const ROUND_OFF: f64 = 1e-12;
 
     /// The eliminated dof and the dofs that it follows.
@@ -313,7 +313,7 @@ impl Equation {
 }
 
 /// A rigid body and its reference node. In all steps a rigid body has its own centre of mass and angle, whether a step
-/// frees them or not, so a run does not depend on later steps.
+/// frees these or not, so a run does not depend on later steps.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RigidBody {
     /// Number of the body among the rigid bodies.
@@ -332,9 +332,9 @@ pub struct RigidBody {
     pub is_coupling: bool,
     /// Nodes with the masses that they carry in addition to the elements (mass).
     pub masses: Vec<(usize, f64)>,
-    /// Moment of inertia in addition to that of elements and masses (mass length^2).
+    /// Moment of inertia in addition to the moment of inertia of elements and masses (mass length^2).
     pub rotary_inertia: f64,
-    /// Whether any step leaves the body free in some direction, or turns it.
+    /// Whether any step leaves the body free in some direction, or turns the body.
     pub turns: bool,
 }
 
@@ -350,8 +350,8 @@ impl RigidBody {
 pub enum RigidPart {
     /// A rigid surface (index).
     Surface(usize),
-    /// The elements of the set with this name.
+    /// The elements of the set with the given name.
     Elements(String),
-    /// The nodes of the set with this name.
+    /// The nodes of the set with the given name.
     Nodes(String),
 }

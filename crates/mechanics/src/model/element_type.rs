@@ -11,7 +11,7 @@ use super::Plane;
 pub struct ElementType {
     /// Shape and interpolation.
     pub shape: Shape,
-    /// How strains are computed from the displacements.
+    /// Formulation: the way in which strains are computed from the displacements.
     pub formulation: Formulation,
     /// Plane stress, plane strain or body of revolution.
     pub plane: Plane,
@@ -30,7 +30,7 @@ pub enum Shape {
     Quad8,
 }
 
-/// How the strains of an element are computed from its displacements.
+/// Way in which the strains of an element are computed from its displacements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Formulation {
     /// Strains of the displacements at every integration point.
@@ -54,7 +54,7 @@ pub struct Topology {
     /// Number of nodes.
     pub nodes: usize,
     /// Local nodes of every side from corner to corner, with the element on the left; side 0 is S1/P1. Corners come
-    /// first among the nodes, and side i begins at corner i.
+    /// first among the nodes, and the side number i begins at the corner number i.
     pub sides: &'static [&'static [usize]],
     /// Cell type of VTK.
     pub vtk_cell: u8,
@@ -136,7 +136,7 @@ macro_rules! element_types {
             /// All types that a deck may name.
             pub const NAMED: [Self; NAMES.len()] = [$(Self::$name),*];
 
-            /// Numbers and names in the form in which result files list them.
+            /// Numbers and names of the types, as result files list these.
             pub const NUMBERS: &str =
                 concat!($(", ", stringify!($number), " ", stringify!($name)),*).split_at(2).1;
         }
@@ -215,7 +215,7 @@ impl ElementType {
         most
     };
 
-    /// The type with this name in upper case.
+    /// The type with a given name in upper case.
     pub fn from_name(name: &str) -> Option<Self> {
         let at = NAMES.iter().position(|(known, _)| *known == name)?;
         Some(Self::NAMED[at])

@@ -22,8 +22,8 @@ pub enum FrictionLaw {
         /// Decay d_c >= 0 from mu_s to mu_k (time/length).
         decay: f64,
     },
-    /// Curves with increasing pressures; values are linear between the points of a curve and between curves, constant
-    /// beyond.
+    /// Curves with increasing pressures; values are linear between the points of a curve and between curves, and
+    /// constant beyond the first and last points and curves.
     Table(Vec<FrictionCurve>),
     /// Closed pairs never slip.
     Rough,
@@ -38,8 +38,9 @@ pub struct FrictionCurve {
     pub points: Vec<[f64; 2]>,
 }
 
-/// Coefficient of surfaces that never slip: normal forces that are smaller, relative to the tangential ones, than its
-/// inverse are negligible. With a larger coefficient complementarity problems lose digits: with 1e6 some end on a ray.
+/// Coefficient of surfaces that never slip: a normal force is negligible if its ratio to the tangential force is below
+/// the inverse of this coefficient. With a larger coefficient complementarity problems lose digits: with 1e6 some end
+/// on a ray.
 const ROUGH: f64 = 1e4;
 
 impl Default for Friction {
@@ -96,7 +97,7 @@ impl Friction {
         self.shear_limit.is_finite()
     }
 
-    /// Whether the coefficient can ramp to that of another friction.
+    /// Whether the coefficient can ramp to the coefficient of another friction.
     pub fn ramps_to(&self, other: &Friction) -> bool {
         let is_rough = |friction: &Friction| friction.law == FrictionLaw::Rough;
         self.law != other.law && !is_rough(self) && !is_rough(other)
@@ -112,8 +113,8 @@ impl Friction {
         self.limited(self.law.at(Some(rate), pressure), pressure)
     }
 
-    /// Coefficient at a slip rate (`None` at rest) and a pressure, if the friction has changed by a given part of the
-    /// difference from that of another friction.
+    /// Coefficient at a slip rate (`None` at rest) and a pressure, if the friction has changed by a given part of its
+    /// difference from another friction.
     pub fn on_the_way(
         &self,
         (from, part): (&Friction, f64),
@@ -125,7 +126,7 @@ impl Friction {
         self.limited(before + part * (after - before), pressure)
     }
 
-    /// mu <- min(mu, tau_max/p), eq. (3.14).
+    /// Limits a coefficient to min(mu, tau_max/p), eq. (3.14).
     fn limited(&self, mu: f64, pressure: f64) -> f64 {
         match mu * pressure > self.shear_limit {
             true => self.shear_limit / pressure,
@@ -133,8 +134,9 @@ impl Friction {
         }
     }
 
-    /// Two coefficients of the law, equal if it is constant. The two coefficients are those at rest and in fast slip,
-    /// or the largest and the smallest one of a table or with a limit of the shear stress.
+    /// Two coefficients of the law, equal if the coefficient is constant. The two coefficients are the coefficients at
+    /// rest and in fast slip. For a table, or with a limit of the shear stress, the two are the largest and the
+    /// smallest coefficient.
     pub fn range(&self) -> [f64; 2] {
         let [first, other] = match &self.law {
             FrictionLaw::Decay {
@@ -195,7 +197,8 @@ impl FrictionLaw {
     }
 }
 
-/// Value at `x` between entries with increasing places: linear between two entries, constant beyond, eq. (3.12).
+/// Value at `x` between entries with increasing places: linear between two entries, constant beyond the first and the
+/// last entry, eq. (3.12).
 fn between<T>(entries: &[T], x: f64, place: impl Fn(&T) -> f64, value: impl Fn(&T) -> f64) -> f64 {
     let (before, after) = entries.split_at(entries.partition_point(|entry| place(entry) <= x));
     match (before.last(), after.first()) {

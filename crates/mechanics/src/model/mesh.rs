@@ -53,8 +53,8 @@ impl Mesh {
         parent
     }
 
-    /// Whether the bodies are bodies of revolution around the axis x = 0; either all elements are of this kind, or
-    /// none.
+    /// Whether the bodies are bodies of revolution around the axis x = 0; either all elements are rings, or no element
+    /// is a ring.
     pub fn is_axisymmetric(&self) -> bool {
         let first = self.elements.first();
         first.is_some_and(|element| element.element_type.is_ring())
@@ -67,7 +67,7 @@ impl Mesh {
         faces.filter(|&face| !at_nodes.share(face, self)).collect()
     }
 
-    /// Faces of the outline that something can touch: in bodies of revolution those that are not on the axis.
+    /// Faces of the outline that something can touch: in bodies of revolution, the faces that are not on the axis.
     pub fn exterior_faces(&self) -> Vec<Face> {
         let faces = self.outline().into_iter();
         faces.filter(|&face| !self.is_on_axis(face)).collect()
@@ -143,8 +143,9 @@ impl Mesh {
         has_element
     }
 
-    /// Area of an undeformed element (length^2). On a side with a mid-side node the outline through the nodes contains
-    /// half of the parallelogram over the chord, whereas the parabola contains two thirds.
+    /// Area of an undeformed element (length^2). On a side with a mid-side node, the area between the chord and the
+    /// straight lines through the nodes is half of the parallelogram over the chord, whereas the area under the
+    /// parabola is two thirds.
     pub fn area(&self, element: &Element) -> f64 {
         let of_corners = polygon_area(self.corners(element));
         if !element.element_type.is_quadratic() {
@@ -283,15 +284,15 @@ pub struct Element {
     pub element_type: ElementType,
     /// Node indices, as many as the type has: the corners counter-clockwise, then the mid-side nodes.
     pub nodes: Nodes,
-    /// Index into `Model::sections`; [`NO_SECTION`] until it is known.
+    /// Index into `Model::sections`; [`NO_SECTION`] until the section is known.
     pub section: usize,
 }
 
-/// Section of an element that has none yet.
+/// Section index of an element that has no section yet.
 pub const NO_SECTION: usize = usize::MAX;
 
 impl Element {
-    /// Number of sides, and of corners.
+    /// Number of sides, which is also the number of corners.
     pub fn side_count(&self) -> usize {
         self.element_type.topology().sides.len()
     }
@@ -338,7 +339,7 @@ impl Element {
         )
     }
 
-    /// The side number `side`, from 0: 0 is S1/P1.
+    /// The side number `side`, from 0: side 0 is S1/P1.
     pub fn side(&self, side: usize) -> Side {
         let local = self.element_type.topology().sides[side].iter();
         Side::new(local.map(|&local| self.nodes[local]).collect())
@@ -350,8 +351,9 @@ impl Element {
         sides.map(|side| [side[0], side[side.len() - 1]].map(|local| self.nodes[local]))
     }
 
-    /// Nodes of the convex polygons into which the outline is divided, which need not be convex itself. With mid-side
-    /// nodes these polygons are a triangle at each corner and the polygon between the triangles.
+    /// Nodes of the convex polygons into which the outline of an element is divided; the outline itself need not be
+    /// convex. With mid-side nodes the convex polygons of an element are a triangle at each corner and the polygon
+    /// between the triangles.
     pub fn convex_parts(&self) -> SmallVec<[Nodes; 1]> {
         if !self.element_type.is_quadratic() {
             return [self.nodes.clone()].into_iter().collect();
@@ -379,7 +381,7 @@ impl Element {
 pub struct Face {
     /// Element index.
     pub element: usize,
-    /// Number of the side, from 0: 0 is S1.
+    /// Number of the side, from 0: side 0 is S1.
     pub side: usize,
 }
 

@@ -3,7 +3,7 @@
 //!
 //! Everything in the model is indexed from 0 in the order of the deck. Vectors over degrees of freedom have `2 N`
 //! entries; dof `2 n + i` is direction i (0 = x, 1 = y) of node n. A rigid body that turns has two more nodes, which
-//! exist only in these vectors: its centre of mass, and one whose direction 0 is its angle.
+//! exist only in vectors over the dofs: the centre of mass, and a node whose direction 0 is the angle of the body.
 
 mod amplitude;
 mod connector;
@@ -54,7 +54,7 @@ pub struct Model {
     pub title: String,
     /// Nodes and elements.
     pub mesh: Mesh,
-    /// Named sets of nodes and elements, the sets of the history, and instances of parts.
+    /// Named sets of nodes and elements, the sets of the history output, and instances of parts.
     pub sets: NamedSets,
     /// Named surfaces.
     pub surfaces: Vec<Surface>,
@@ -62,7 +62,7 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// Sections: material and thickness of elements.
     pub sections: Vec<Section>,
-    /// Springs and dashpots.
+    /// Springs and dashpots of the model.
     pub connectors: Vec<Connector>,
     /// Contacts: one for each data line of `*CONTACT PAIR`, then general contact.
     pub contacts: Vec<Contact>,
@@ -74,11 +74,11 @@ pub struct Model {
     pub equations: Vec<Equation>,
     /// Hinges between bodies.
     pub hinges: Vec<Hinge>,
-    /// Initial velocity, `2 N` entries (length/time), followed by those of the bodies that turn, with their angular
-    /// velocity (1/time).
+    /// Initial velocity, `2 N` entries (length/time), followed by the velocities of the bodies that turn, with their
+    /// angular velocity (1/time).
     pub initial_velocity: Vec<f64>,
-    /// Temperature of every node at the start of the analysis (temperature); empty if the deck gives none, which means
-    /// zero.
+    /// Temperature of every node at the start of the analysis (temperature); empty if the deck gives no temperatures,
+    /// which means zero.
     pub initial_temperature: Vec<f64>,
     /// Steps in order.
     pub steps: Vec<Step>,
@@ -107,13 +107,13 @@ impl Model {
         });
     }
 
-    /// Name of a node in the deck: its number, or `Instance.number`. The name of a node that only a rigid body has is
-    /// that of the reference node.
+    /// Name of a node in the deck: its number, or `Instance.number`. A node that exists only for a rigid body has the
+    /// name of the reference node.
     pub fn node_name(&self, node: usize) -> String {
         node_name(self.node_of(node), &self.mesh, &self.sets.instances)
     }
 
-    /// The mesh node to which a pair of dofs belongs; for dofs beyond those of the nodes, the reference node of the
+    /// The mesh node to which a pair of dofs belongs; for dofs beyond the dofs of the nodes, the reference node of the
     /// rigid body.
     pub fn node_of(&self, node: usize) -> usize {
         let beyond = node.checked_sub(self.mesh.node_count());
@@ -156,7 +156,8 @@ impl Model {
     }
 
     /// Whether supports of a step prescribe the same motion along an axis for two nodes, on bodies that neither this
-    /// step nor an earlier one turns. A hinge has no effect along the axis between two nodes for which this is true.
+    /// step nor an earlier step turns. If the result is true, a hinge between the two nodes has no effect along the
+    /// axis.
     pub fn are_held_alike(&self, step: &Step, nodes: [usize; 2], axis: usize) -> bool {
         let has_not_turned = |body: &&RigidBody| {
             let angle = self.angle_of(body);
@@ -178,8 +179,8 @@ impl Model {
         a.is_some() && a == b
     }
 
-    /// Pairs of nodes at one place that equations between them join in both directions, the smaller index first. An
-    /// equation that joins a pair has at most one more node, for example that of a pre-tension section.
+    /// Pairs of nodes at one place that equations between them join in both directions, with the smaller index first.
+    /// An equation that joins a pair has at most one more node, for example the node of a pre-tension section.
     pub fn joined_nodes(&self) -> BTreeSet<[usize; 2]> {
         let mesh = &self.mesh;
         let mut counts: BTreeMap<[usize; 2], usize> = BTreeMap::new();
@@ -219,7 +220,7 @@ impl Model {
         material.wave_speed(element.element_type.plane)
     }
 
-    /// Whether accumulated plastic strains are written, because a material may flow or the deck asks for them.
+    /// Whether accumulated plastic strains are written: if a material may flow, or the deck asks for these strains.
     pub fn writes_plastic_strain(&self) -> bool {
         self.sets.fields.plastic_strain || self.has_plasticity()
     }
@@ -255,8 +256,9 @@ impl Model {
         self.contacts.iter().any(is_varying) || all.any(|[first, other]| first != other)
     }
 
-    /// Two coefficients of friction of a contact, equal if it is constant in all steps. The two coefficients are those
-    /// of [`Friction::range`], or the largest and the smallest one if steps change the friction.
+    /// Two coefficients of friction of a contact, equal if the coefficient is constant in all steps. The two
+    /// coefficients are the coefficients of [`Friction::range`]; if steps change the friction, they are the largest and
+    /// the smallest coefficient.
     pub fn friction_range(&self, contact: usize) -> [f64; 2] {
         let own = self.contacts[contact].interaction.friction.range();
         let changes = self.steps.iter().flat_map(|step| &step.contacts.friction);
@@ -287,7 +289,7 @@ impl Model {
         first.into_iter().flat_map(|step| &step.interferences)
     }
 
-    /// Whether a contact (index) presses the initial overlap out in the first step.
+    /// Whether a contact (index) removes the initial overlap in the first step.
     pub fn shrinks(&self, contact: usize) -> bool {
         let mut all = self.first_interferences();
         all.any(|load| load.at.contact == contact && load.at.is_shrink)
@@ -381,7 +383,7 @@ impl Material {
     }
 }
 
-/// Edge lengths of the elements, and times of waves along them.
+/// Edge lengths of the elements, and times of waves along these edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EdgeScales {
     /// The shortest edge (length); infinite without elements.
@@ -393,7 +395,7 @@ pub struct EdgeScales {
 }
 
 impl EdgeScales {
-    /// Measures the elements of a mesh; some of them may have no section.
+    /// Measures the elements of a mesh; some elements may have no section.
     pub fn new(mesh: &Mesh, sections: &[Section], materials: &[Material]) -> Self {
         // elements of a section in each plane; at last those without section
         let planes = [Plane::Stress, Plane::Strain, Plane::Revolution];
@@ -429,6 +431,6 @@ impl EdgeScales {
 pub struct Section {
     /// Index into `Model::materials`.
     pub material: usize,
-    /// Thickness t (length); it has no meaning for bodies of revolution.
+    /// Thickness t (length); the thickness has no meaning for bodies of revolution.
     pub thickness: f64,
 }

@@ -1,7 +1,7 @@
 //! Named sets of nodes and elements, the sets of the history output (groups `/history/nodes` and `/history/elements` of
 //! the result file), fields on request, and dofs in the status file. Also instances of parts, with their nodes and
-//! elements and the numbers of these nodes and elements in the part. With instances the numbers of the mesh are the
-//! program's own, each used once.
+//! elements and the numbers of these nodes and elements in the part. With instances, nodes and elements of the mesh get
+//! numbers of the program's own, each used once.
 
 use std::collections::BTreeSet;
 
@@ -26,7 +26,7 @@ pub struct NamedSets {
     pub instances: Vec<Instance>,
 }
 
-/// Fields of the frames that are written only if the deck asks for them.
+/// Fields of the frames that are written only if the deck asks for these fields.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RequestedFields {
     /// Concentrated loads (`CF`).
@@ -65,7 +65,7 @@ pub enum NodalVariable {
 }
 
 impl NodalVariable {
-    /// All these variables, with their names in decks.
+    /// All element variables that frames can contain at nodes, with their names in decks.
     pub const ALL: [(NodalVariable, &'static str); 7] = [
         (NodalVariable::Stress, "S"),
         (NodalVariable::Strain, "E"),
@@ -76,7 +76,7 @@ impl NodalVariable {
         (NodalVariable::PlasticStrain, "PEEQ"),
     ];
 
-    /// The variable with a name in a deck; components such as `S11` are names too.
+    /// The variable with a name in a deck; names of components such as `S11` are also allowed.
     pub fn named(name: &str) -> Option<Self> {
         let whole = match name.trim_end_matches(|c: char| c.is_ascii_digit()) {
             "MISES" => "S",
@@ -87,16 +87,16 @@ impl NodalVariable {
     }
 }
 
-/// A set in the history; sums over the set, and means over nodes, are always written.
+/// A set in the history output; sums over the set, and means over nodes, are always written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct HistorySet {
     /// Index into `NamedSets::nodes` or `NamedSets::elements`.
     pub set: usize,
-    /// Whether the values of every member are written too.
+    /// Whether the history also contains the values of every member.
     pub each_member: bool,
-    /// Whether the values at the integration points of elements are written too.
+    /// Whether the history also contains the values at the integration points of elements.
     pub at_points: bool,
-    /// Whether the values at the nodes of elements are written too.
+    /// Whether the history also contains the values at the nodes of elements.
     pub at_nodes: bool,
 }
 

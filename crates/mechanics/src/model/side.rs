@@ -1,7 +1,7 @@
-//! Sides of elements: their nodes, their shape functions, and the forces on them. See docs/theory/elements.md.
+//! Sides of elements: their nodes, their shape functions, and the forces on sides. See docs/theory/elements.md.
 //!
 //! A side is not a contact segment: a segment is a straight line between two neighbouring nodes, and a side has one or
-//! two of them.
+//! two segments.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 
 use super::Thickness;
 
-/// A straight line from a node to the next, with the body on the left; contact uses sides in this form.
+/// A straight line from a node to the next, with the body on the left; contact uses sides in the form of segments.
 pub type Segment = [usize; 2];
 
 /// Nodes of a side from corner to corner, with the element on the left.
@@ -21,7 +21,8 @@ pub struct Side {
     nodes: SideNodes,
 }
 
-/// Shape functions h_a and dh_a/dr of a side at a place -1 <= r <= 1: those of Lagrange with evenly spaced nodes:
+/// Shape functions h_a and dh_a/dr of a side at a place -1 <= r <= 1: the functions of Lagrange with evenly spaced
+/// nodes:
 ///
 /// ```text
 /// h_a = prod (r - r_b)/(r_a - r_b) over b != a,   r_a = 2 a/(n - 1) - 1
@@ -64,7 +65,7 @@ impl Side {
         &self.nodes
     }
 
-    /// Nodes of the side, which is consumed.
+    /// Converts the side into its nodes.
     pub fn into_nodes(self) -> SideNodes {
         self.nodes
     }
@@ -79,8 +80,8 @@ impl Side {
         self.nodes.windows(2).map(|pair| [pair[0], pair[1]])
     }
 
-    /// int h_a n dl at every node a (length), where n is the outward normal: the forces of a unit suction per
-    /// thickness. `from_first` are the positions of the nodes relative to the first node.
+    /// Forces int h_a n dl of a unit suction, per thickness, at every node a (length), where n is the outward normal.
+    /// `from_first` are the positions of the nodes relative to the first node.
     pub fn normals(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],
@@ -89,8 +90,8 @@ impl Side {
         self.integrals(from_first, None, |e| [e[1], -e[0]])
     }
 
-    /// int h_a n t dl at every node a (length^2), like [`Self::normals`] with the thickness t; `radius` is the distance
-    /// of the first node from the axis.
+    /// Forces int h_a n t dl at every node a (length^2), like [`Self::normals`] with the thickness t; `radius` is the
+    /// distance of the first node from the axis.
     pub fn thrusts(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],
@@ -101,7 +102,7 @@ impl Side {
         integrals.map(move |(node, normal)| (node, normal.map(|n| n * factor)))
     }
 
-    /// int h_a t dl at every node a (length^2), with the arguments of [`Self::thrusts`].
+    /// Integrals int h_a t dl at every node a (length^2), with the arguments of [`Self::thrusts`].
     pub fn areas(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],
@@ -126,7 +127,8 @@ impl Side {
         PI * terms.sum::<f64>()
     }
 
-    /// int h_a v(dx/dr) dr at every node a; with a distance of the first node from the axis int 2 pi R h_a v(dx/dr) dr.
+    /// Integrals int h_a v(dx/dr) dr at every node a; if the distance of the first node from the axis is given, int 2
+    /// pi R h_a v(dx/dr) dr.
     fn integrals(
         &self,
         from_first: impl Fn(usize) -> [f64; 2],

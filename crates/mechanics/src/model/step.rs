@@ -5,10 +5,10 @@ use super::{Amplitude, Face, Friction, TimeBase};
 use crate::lcp::LcpMethod;
 use crate::linear::SolverChoice;
 
-/// One step with everything that acts in it, whether it is given in this step or in an earlier one.
+/// One step with everything that acts in the step, whether given in this step or in an earlier step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// Name of the step, if it has one.
+    /// Name of the step, if the deck gives a name.
     pub name: Option<String>,
     /// Its procedure.
     pub procedure: Procedure,
@@ -33,7 +33,7 @@ pub struct Step {
     /// Temperatures of nodes, with increasing nodes, each at most once; nodes that are not listed keep the temperature
     /// at the start of the analysis.
     pub temperatures: Vec<Load<NodeTemperature>>,
-    /// Changes of the contacts in the step.
+    /// Contacts that do not act in the step, and contacts with another friction.
     pub contacts: ContactChanges,
     /// Times at which field frames are written.
     pub frames: Frames,
@@ -60,19 +60,19 @@ impl Step {
         }
     }
 
-    /// The motion of a dof, if it is prescribed.
+    /// The prescribed motion of a dof; `None` if the dof is free.
     pub fn motion_of(&self, dof: usize) -> Option<SupportMotion> {
         let place = (self.supports).binary_search_by_key(&dof, |support| support.dof);
         place.ok().map(|index| self.supports[index].motion)
     }
 }
 
-/// Changes of the contacts in a step, made by this step or an earlier one.
+/// Changes of the contacts in a step, made by the step itself or by an earlier step.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ContactChanges {
     /// Contacts that do not act (indices, increasing).
     pub removed: Vec<usize>,
-    /// Contacts whose friction differs from that of their interaction, by increasing contacts.
+    /// Contacts whose friction differs from the friction of their interaction, by increasing contacts.
     pub friction: Vec<FrictionChange>,
 }
 
@@ -81,19 +81,19 @@ pub struct ContactChanges {
 pub struct FrictionChange {
     /// Index of the contact.
     pub contact: usize,
-    /// Friction of the contact; if a former friction is replaced gradually, it is the final one.
+    /// Friction of the contact; if a former friction is replaced gradually, this is the final friction.
     pub friction: Friction,
     /// Former friction, which is replaced gradually.
     pub from: Option<FormerFriction>,
 }
 
-/// A friction that another one replaces gradually.
+/// A friction that another friction replaces gradually.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FormerFriction {
     /// The friction.
     pub friction: Friction,
-    /// Index of the amplitude whose value, from 0 to 1, is the part that has been replaced; without it the part grows
-    /// linearly over the step from 0 to 1.
+    /// Index of the amplitude whose value, from 0 to 1, is the replaced part; without an amplitude the replaced part
+    /// grows linearly over the step from 0 to 1.
     pub amplitude: Option<usize>,
 }
 
@@ -108,13 +108,13 @@ impl ContactChanges {
     }
 }
 
-/// Request of checkpoints, from a step on.
+/// Request of checkpoints, valid from a step on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RestartOutput {
     /// Number, from 1, of the first step with the requested checkpoints.
     pub from_step: usize,
-    /// Number of increments between two checkpoints of a step; its last increment always has one.
-    /// 0: none.
+    /// Number of increments between two checkpoints of a step; the last increment of a step always has a checkpoint. 0:
+    /// none.
     pub every: usize,
     /// Whether earlier checkpoints of the step are kept.
     pub keeps_all: bool,
@@ -139,8 +139,8 @@ pub struct Increments {
     pub dt: f64,
     /// Duration T of the step (time).
     pub period: f64,
-    /// Smallest increment that a cutback may reach (time). By default this least increment is 0; in a static step
-    /// without DIRECT it is 1e-5 of the duration, or the increment if that is smaller.
+    /// Smallest increment that a cutback may reach (time). By default the smallest increment is 0; in a static step
+    /// without DIRECT it is 1e-5 of the duration, or the increment dt if dt is smaller.
     pub dt_min: f64,
     /// Largest increment (time).
     pub dt_max: f64,
@@ -149,7 +149,7 @@ pub struct Increments {
 }
 
 impl Increments {
-    /// Increments of one length over a step (DIRECT); cutbacks may shorten them without limit.
+    /// Increments of one length over a step (DIRECT); cutbacks may shorten these increments without limit.
     pub fn fixed(dt: f64, period: f64) -> Self {
         Increments {
             dt,
@@ -175,19 +175,19 @@ pub enum Incrementation {
     },
 }
 
-/// Times at which field frames are written. The start and the end of a step are always written.
+/// Times at which field frames are written. Frames at the start and at the end of a step are always written.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Frames {
     /// The program's default number of frames.
     #[default]
     Default,
-    /// The given number of frames, evenly spaced over the step.
+    /// A given number of frames, evenly spaced over the step.
     Count(usize),
-    /// At multiples of the given time since the start of the step.
+    /// Frames at multiples of a given time since the start of the step.
     Every(f64),
-    /// After each multiple of this number of increments.
+    /// Frames after each multiple of a given number of increments.
     Increments(usize),
-    /// At the given step times, increasing.
+    /// Frames at the given step times, which increase.
     Times(Vec<f64>),
 }
 
@@ -196,12 +196,12 @@ pub enum Frames {
 pub enum Variation {
     /// The full magnitude from the start of the step.
     Constant,
-    /// Linear over the step up to the full magnitude.
+    /// Linear over the step, from the magnitude at its start up to the full magnitude.
     Ramp {
         /// Magnitude at the start of the step.
         from: f64,
     },
-    /// Magnitude times the amplitude with this index.
+    /// Magnitude times the amplitude with the given index.
     Amplitude(usize),
 }
 
@@ -222,7 +222,7 @@ impl<T> Load<T> {
         matches!(self.variation, Variation::Ramp { .. })
     }
 
-    /// Magnitudes at the start and at the end of the step; `None` if an amplitude gives them.
+    /// Magnitudes at the start and at the end of the step; `None` if an amplitude gives the magnitudes.
     pub fn ends(&self) -> Option<[f64; 2]> {
         match self.variation {
             Variation::Constant => Some([self.magnitude; 2]),
@@ -231,7 +231,7 @@ impl<T> Load<T> {
         }
     }
 
-    /// The load with these magnitudes at start and end of the step, linear in between.
+    /// The load with the given magnitudes at start and end of the step, linear in between.
     pub fn between(self, [from, magnitude]: [f64; 2]) -> Self {
         let variation = match from == magnitude {
             true => Variation::Constant,
@@ -279,12 +279,12 @@ pub struct CentrifugalForce {
 pub struct Pressure {
     /// Loaded face.
     pub face: Face,
-    /// Whether the load is a shear and not a pressure.
+    /// Whether the load is a shear, not a pressure.
     pub is_shear: bool,
 }
 
 impl Pressure {
-    /// The force of a unit magnitude if `int N^T n dl` is `thrust`, where n is the outward normal.
+    /// The force of a unit magnitude, if `thrust` is `int N^T n dl` with the outward normal n.
     pub fn force(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         match self.is_shear {
             true => [-y, x],
@@ -309,8 +309,8 @@ pub struct NodeTemperature {
     pub node: usize,
 }
 
-/// Overlap that a contact allows. The magnitude is a length, the same for all slave nodes; for a shrink fit it is a
-/// factor on the overlap of each node at the start of the analysis.
+/// Overlap that a contact allows. The magnitude is a length, the same for all slave nodes. For a shrink fit the
+/// magnitude is a factor on the overlap of each node at the start of the analysis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interference {
     /// Index of the contact.
@@ -332,7 +332,7 @@ pub struct Support {
 /// Motion of a support within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SupportMotion {
-    /// Linear over the step from the displacement at its start to `to` (length) at its end.
+    /// Linear over the step from the displacement at the start of the step to `to` (length) at its end.
     Ramp {
         /// Displacement at the end of the step.
         to: f64,
@@ -357,7 +357,7 @@ pub enum SupportMotion {
 }
 
 impl SupportMotion {
-    /// Whether the support stays at its place of the start of the analysis.
+    /// Whether the support stays at its place at the start of the analysis.
     pub fn is_still(self) -> bool {
         match self {
             SupportMotion::Ramp { to } => to == 0.0,
@@ -367,8 +367,8 @@ impl SupportMotion {
         }
     }
 
-    /// Motion of a support after a step of the given duration, if no card changes it: a motion that
-    /// follows an amplitude in step time keeps its last value.
+    /// Motion of a support after a step of the given duration, if no card changes the motion: a motion that follows an
+    /// amplitude in step time keeps its last value.
     pub fn after_step(self, period: f64, amplitudes: &[Amplitude]) -> SupportMotion {
         let last = |index: usize| {
             let curve = amplitudes.get(index);

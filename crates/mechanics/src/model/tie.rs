@@ -1,5 +1,5 @@
-//! Ties: nodes of a slave surface that follow the segments of a master surface at all times, each by itself or as a
-//! mean over its faces. See docs/theory/contact.md, Ties.
+//! Ties: nodes of a slave surface that follow the segments of a master surface at all times, either each node by itself
+//! or as a mean over its faces. See docs/theory/contact.md, Ties.
 
 use super::contact::{ContactFormulation, Equation};
 use super::side::{Segment, SideNodes};
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// A slave surface that is tied to a master surface (a row of `*TIE`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tie {
-    /// Name of the tie: that of the card, with the number of the row if there are several.
+    /// Name of the tie: the name of the card, with the number of the row if the card has several rows.
     pub name: String,
     /// Index of the slave surface.
     pub slave: usize,
@@ -39,13 +39,14 @@ pub struct TiedSide {
     pub lines: SmallVec<[TiedLine; 2]>,
 }
 
-/// A straight line of the slave surface, with integrals over it. The line has one integral for each of its ends j, with
-/// the dual functions psi_j.
+/// A straight line of the slave surface, with integrals over the line. The line has one integral for each of its ends
+/// j, with the dual functions psi_j.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TiedLine {
-    /// D_j = sum w_q N_j: lengths, or in bodies of revolution areas divided by 2 pi.
+    /// Weights D_j = sum w_q N_j of the ends: lengths, or in bodies of revolution areas divided by 2 pi.
     pub weights: [f64; 2],
-    /// sum w_q psi_j (alpha_l I + beta_l J) over the points q, with their alpha_l and beta_l.
+    /// Sums of w_q psi_j (alpha_l I + beta_l J) over the points q of the line, with the alpha_l and beta_l of each
+    /// point.
     pub follows: [Follows; 2],
 }
 
@@ -57,18 +58,18 @@ pub enum TieReach {
     Near,
     /// Nodes whose distance from the master is at most a given length.
     Within(f64),
-    /// Nodes of the node set with this index.
+    /// Nodes of the node set with the given index.
     Nodes(usize),
 }
 
-/// Largest distance of a tied node from the segment that it faces, in lengths of the segment, if the deck gives none.
+/// Largest distance of a tied node from the segment that it faces, in lengths of the segment, if the deck gives no
+/// distance.
 pub const NEAR: f64 = 0.05;
 
-/// Difference from 0 or 1 up to which a coordinate of a tied node, in segment lengths, is set to
-/// that value.
+/// Difference up to which a coordinate of a tied node, in segment lengths, is set to 0 or 1.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Coefficient of a mean below which it counts as zero.
+/// Value of a coefficient of a mean below which the coefficient counts as zero.
 const NO_PART: f64 = 1e-14;
 
 /// A node that follows a segment.
@@ -100,7 +101,7 @@ impl TiedNode {
         }
     }
 
-    /// Equation for the displacement of the node in a direction:
+    /// Equation for the displacement of a tied node in a direction:
     ///
     /// ```text
     /// u_s = ((1 - xi) I - eta J) u_a + (xi I + eta J) u_b,  J = [0 -1; 1 0]      eq. (3.11)
@@ -126,12 +127,12 @@ impl TiedNode {
     }
 }
 
-/// Row of J: direction and sign of (J u)_x = -u_y, (J u)_y = u_x.
+/// Row of the rotation J, as direction and sign: (J u)_x = -u_y, (J u)_y = u_x.
 fn row_of_j(direction: usize) -> (usize, f64) {
     [(1, -1.0), (0, 1.0)][direction]
 }
 
-/// A slave vertex in one direction: D_j u_j = sum of terms.
+/// The condition for a slave vertex in one direction: D_j u_j is a sum of terms.
 #[derive(Default)]
 struct Mean {
     weight: f64,
@@ -161,14 +162,15 @@ impl Tie {
     /// u_j = (1/D_j) sum_q w_q psi_j(q) u_q,   D_j = sum_q w_q N_j      eq. (3.34)
     /// ```
     ///
-    /// with sums over the points q of its sides; all other nodes follow by [`TiedNode::equation`]. Kept nodes have their
-    /// own displacement. In the lines of a kept node i the function of the other end is 1 instead of psi_j:
+    /// with sums over the points q of the node's sides; all other nodes follow by [`TiedNode::equation`]. Kept nodes,
+    /// which do not follow the master, have their own displacement. In the lines of a kept node i the function of the
+    /// other end is 1 instead of psi_j:
     ///
     /// ```text
     /// D_j u_j + D_i u_i = sum_q w_q u_q
     /// ```
     ///
-    /// With this 1 the functions still add up to 1, and a uniform traction passes through the tie.
+    /// With the value 1 the functions still add up to 1, so the tie transmits a uniform traction.
     pub fn equations(&self, direction: usize, is_kept: impl Fn(usize) -> bool) -> Vec<Equation> {
         let mut means: BTreeMap<usize, Mean> = BTreeMap::new();
         let mut corners: BTreeMap<usize, [usize; 2]> = BTreeMap::new();

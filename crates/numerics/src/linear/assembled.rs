@@ -1,6 +1,6 @@
 //! Assembly of element matrices into compressed sparse columns, K = sum T_e^T K_e T_e, through positions that are
-//! computed once. Symmetric blocks may be added outside that pattern, for unknowns that no element connects. See
-//! docs/theory/time.md.
+//! computed once. Symmetric blocks may be added outside the pattern of the elements, for unknowns that no element
+//! connects. See docs/theory/time.md.
 
 use std::sync::{Arc, OnceLock};
 
@@ -17,7 +17,7 @@ const DISTRIBUTED: u32 = u32::MAX;
 /// Estimated number of rows of a column for each element of its unknown, in a mesh of quadrilaterals or triangles.
 const ROWS: usize = 5;
 
-/// Number of dofs of an element up to which a list of them needs no allocated memory.
+/// Number of dofs of an element up to which a list of its dofs needs no allocated memory.
 const DOFS: usize = 16;
 
 /// A symmetric sparse matrix over unknowns, assembled from element matrices over dofs. Both
@@ -33,20 +33,20 @@ pub struct Assembled {
 /// Positions at which the entries of the element matrices are added.
 #[derive(Debug)]
 struct EntryPositions {
-    /// Position in the values of the entries of every element matrix, column by column: for every entry, or for every
-    /// second one if the next entry always goes to the next value.
+    /// Position among the values for every entry of the element matrices, column by column. If pairs of entries always
+    /// go to consecutive values, only the position for the first entry of each pair.
     positions: Vec<u32>,
     /// Start of each element in `positions`, and the end of the last one.
     starts: Vec<usize>,
     /// Position of every entry of the diagonal.
     diagonal: Vec<u32>,
-    /// Terms of the entries at dofs that follow others, element by element.
+    /// Terms of the entries of element matrices at dofs that follow other dofs, element by element.
     couplings: Vec<Coupling>,
     /// Connected group of every unknown.
     groups: OnceLock<Vec<usize>>,
 }
 
-/// A term of T_e^T K_e T_e for a dof whose row of T is not a row of the identity.
+/// A term of T_e^T K_e T_e for a dof that follows other dofs.
 #[derive(Debug, Clone, Copy)]
 struct Coupling {
     element: usize,
@@ -54,7 +54,7 @@ struct Coupling {
     entry: usize,
     /// Position of the term among the values.
     position: u32,
-    /// Terms of T in its row and its column, whose coefficients are multiplied.
+    /// Terms of T for the row and for the column of the entry; the product of their coefficients multiplies the entry.
     terms: [u32; 2],
 }
 
@@ -135,7 +135,7 @@ impl EntryPositions {
         self.starts.push(self.positions.len());
     }
 
-    /// Finds the positions for an element whose dofs are all unknowns.
+    /// Finds the positions of the entries of an element whose dofs are all unknowns.
     fn place_unknowns(&mut self, pattern: &Pattern, unknowns: &[usize]) {
         let twos = unknowns.as_chunks::<2>();
         let are_twos = twos.1.is_empty() && twos.0.iter().all(|[p, q]| p + 1 == *q);
@@ -159,7 +159,7 @@ impl EntryPositions {
         }
     }
 
-    /// Finds the positions for an element with dofs that are prescribed or follow others.
+    /// Finds the positions of the entries of an element with dofs that are prescribed or follow other dofs.
     fn place_dofs(&mut self, pattern: &Pattern, map: &Transformation, dofs: &[usize]) {
         let element = self.starts.len() - 1;
         let pairs = dofs
@@ -186,7 +186,7 @@ impl EntryPositions {
         }
     }
 
-    /// Terms of an element matrix that equations distribute.
+    /// Terms of those entries of an element matrix that equations distribute over several unknowns.
     fn couplings(&self, element: usize) -> &[Coupling] {
         let first = self.couplings.partition_point(|c| c.element < element);
         let last = self.couplings.partition_point(|c| c.element <= element);
@@ -377,7 +377,7 @@ pub struct AddedBlocks {
 }
 
 impl AddedBlocks {
-    /// Adds T_e^T K_e T_e of a symmetric matrix `k` over some dofs; zeros of `k` do not enlarge the pattern.
+    /// Adds the block T_e^T K_e T_e of a symmetric matrix `k` over some dofs; zeros of `k` do not enlarge the pattern.
     pub fn add(&mut self, map: &Transformation, dofs: &[usize], k: &DMatrix<f64>) {
         for (j, &column_dof) in dofs.iter().enumerate() {
             for (i, &row_dof) in dofs.iter().enumerate().filter(|&(i, _)| k[(i, j)] != 0.0) {
@@ -395,9 +395,9 @@ impl AddedBlocks {
         self.entries.is_empty()
     }
 
-    /// Places (column, row) of these blocks and of earlier ones, in increasing order. Keeping earlier places keeps the
-    /// pattern of the sum, and with it its symbolic analysis. Earlier places are forgotten if there are many more of
-    /// them than entries.
+    /// Places (column, row) of the entries of the present and of earlier blocks, in increasing order. With the earlier
+    /// places kept, the pattern of the sum stays the same, and so does its symbolic analysis. Earlier places are
+    /// forgotten if there are many more places than entries.
     pub(super) fn places(&self, earlier: &[(usize, usize)]) -> Vec<(usize, usize)> {
         let forgets = earlier.len() > MOST_PLACES * self.entries.len();
         let mut places = if forgets {
@@ -419,9 +419,9 @@ pub(super) struct BlockSum {
     sum: SymmetricMatrix,
     /// Places (column, row) of the entries of the blocks, in increasing order.
     places: Vec<(usize, usize)>,
-    /// Positions of these places among the values.
+    /// Positions of the places of the blocks among the values.
     positions: Vec<usize>,
-    /// Runs of values of the matrix that are contiguous in the sum, too.
+    /// Runs of values of the matrix that are also contiguous in the sum.
     runs: Vec<ConsecutiveValues>,
 }
 

@@ -9,7 +9,7 @@ const PIECE: usize = 32_768;
 /// Smallest number with a meaningful relative error: its round-off is still a normal number.
 pub const SMALLEST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
-/// Largest absolute value; 0 without values, NaN if one of them is NaN.
+/// Largest absolute value; 0 without values, NaN if one of the values is NaN.
 pub fn largest(values: &[f64]) -> f64 {
     match values.len() > PIECE && rayon::current_num_threads() > 1 {
         true => (values.par_chunks(PIECE).map(largest_of)).reduce(|| 0.0, larger),

@@ -1,5 +1,5 @@
-//! Sparse symmetric matrices over the unknowns of u = T q + g with the pattern of the elements and, if needed, further
-//! blocks; their factorisations, and parts of their inverses.
+//! Sparse symmetric matrices over the unknowns q of u = T q + g, their factorisations, and parts of their inverses. A
+//! matrix has the pattern of the elements and, if needed, further blocks.
 
 mod assembled;
 mod checked;
@@ -24,9 +24,9 @@ pub use transformation::{Rotation, Transformation};
 /// Sparse factorisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SolverChoice {
-    /// Multifrontal LDL^T with the order that faer finds.
+    /// Multifrontal factorisation LDL^T with the order that faer finds.
     Faer,
-    /// LDL^T of the library sprs-ldl with an AMD permutation.
+    /// Factorisation LDL^T of the library sprs-ldl with an AMD permutation.
     Sprs,
 }
 

@@ -55,7 +55,7 @@ pub trait LinearSolver: Send {
     /// Begins a solve with the right-hand side `b`. A successful `factorize` must come before a solve.
     fn begin(&mut self, b: &[f64]);
 
-    /// Sets the watched unknowns for `watched` and `add`, until the next factorisation.
+    /// Sets the watched unknowns, which `watched` and `add` use until the next factorisation.
     fn watch(&mut self, unknowns: &[usize]);
 
     /// Writes the solution for the right-hand side so far, at the watched unknowns, to `values`, in
@@ -74,8 +74,8 @@ pub trait LinearSolver: Send {
         self.end(b);
     }
 
-    /// The inverse at the rows and columns of each list of `unknowns` (distinct), as m x m matrices by columns. A
-    /// successful `factorize` of a matrix of size `n` must come before.
+    /// The inverse at the rows and columns of each list of `unknowns` (distinct), as m x m matrices by columns.
+    /// `factorize` must have succeeded before, for a matrix of size `n`.
     fn inverse_at(&mut self, unknowns: &[&[usize]], n: usize) -> Vec<Vec<f64>> {
         let mut column = |&column: &usize| {
             let mut x = vec![0.0; n];

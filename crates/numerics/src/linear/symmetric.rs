@@ -1,11 +1,11 @@
-//! Symmetric sparse matrices, stored by columns with both triangles; copies share their pattern. These matrices are own
+//! Symmetric sparse matrices, stored by columns with both triangles; copies share their pattern. The matrices are own
 //! code, because `sprs` stores indices of 8 bytes and does not share the storage of its pattern, so each solver would
 //! need a copy.
 
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Pattern of a symmetric matrix: the places of its entries. Copies share its memory.
+/// Pattern of a symmetric matrix: the places of its entries. Copies of a pattern share its memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pattern {
     /// First entry of every column, and the number of entries at the end.

@@ -11,10 +11,11 @@ use crate::archive::{Archive, ArchiveError};
 
 /// The matrix T of u = T q + g: every dof is a sum of terms c q_k.
 ///
-/// A free dof has a row of the identity, a prescribed dof an empty row, and a dof that follows others by an equation
-/// has a row with their coefficients. A dof of a body that turns also follows the angle of the body, by two
-/// coefficients that change with the iterate. Forces act by the first coefficient, which represents the difference
-/// between start and iterate exactly. The second coefficient is the derivative at the iterate (docs/theory/bodies.md).
+/// In T the row of a free dof is a row of the identity matrix, and the row of a prescribed dof is empty. The row of a
+/// dof that follows other dofs by an equation holds the coefficients of their unknowns. A dof of a body that turns also
+/// follows the angle of the body, by two coefficients that change with the iterate. Forces act by the first coefficient
+/// of an angle, which represents the difference between start and iterate exactly. The second coefficient of an angle
+/// is the derivative of the dof at the iterate (docs/theory/bodies.md).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transformation {
     unknowns: usize,
@@ -22,21 +23,21 @@ pub struct Transformation {
     starts: Arc<[usize]>,
     /// Unknown and coefficient of every term, row by row; copies share them until they change.
     terms: Arc<[(usize, f64)]>,
-    /// Coefficients of the derivatives, if they differ from those of the terms.
+    /// Coefficients of the derivatives, if they differ from the coefficients of the terms.
     derivatives: Option<Vec<f64>>,
-    /// Ranges of the dofs of the unknowns, if all rows are empty or rows of the identity.
+    /// Ranges of the dofs of the unknowns, if every row is empty or a row of the identity matrix.
     selected: Option<Vec<Range<usize>>>,
 }
 
 impl Transformation {
-    /// T q with the coefficients of the derivatives: a motion of all dofs.
+    /// Motion T q of all dofs, with the coefficients of the derivatives.
     pub fn motion(&self, q: &[f64]) -> Vec<f64> {
         let mut motion = vec![0.0; self.starts.len() - 1];
         self.add(q, &mut motion);
         motion
     }
 
-    /// T q with the coefficients by which forces act: the motion with which forces at all dofs do work.
+    /// Motion T q on which forces at all dofs do work, with the coefficients by which forces act.
     pub fn work(&self, q: &[f64]) -> Vec<f64> {
         let of_row = |row: &[(usize, f64)]| row.iter().map(|&(at, c)| c * q[at]).sum();
         self.rows().map(of_row).collect()
@@ -102,13 +103,13 @@ impl Transformation {
         self.derivatives.is_some()
     }
 
-    /// Terms of the derivatives in a range of the terms.
+    /// Terms with the coefficients of the derivatives, for a range of the terms.
     fn derivatives_in(&self, range: Range<usize>) -> impl Iterator<Item = (usize, f64)> + '_ {
         let of = self.derivatives.as_deref();
         range.map(move |i| (self.terms[i].0, of.map_or(self.terms[i].1, |of| of[i])))
     }
 
-    /// Sets the coefficients of the last term of a dof: the one by which forces act, and the derivative.
+    /// Sets the coefficients of the last term of a dof: the coefficient by which forces act, and the derivative.
     pub fn set_last(&mut self, dof: usize, [force, derivative]: [f64; 2]) {
         let Some(last) = self.starts[dof + 1].checked_sub(1) else {
             return;
@@ -147,14 +148,14 @@ impl Transformation {
         starts.map(|ends| &self.terms[ends[0]..ends[1]])
     }
 
-    /// T^T v over the unknowns for a vector v over all dofs.
+    /// The product T^T v over the unknowns for a vector v over all dofs.
     pub fn restrict(&self, v: &[f64]) -> Vec<f64> {
         let mut restricted = Vec::new();
         self.write_restricted(v, &mut restricted);
         restricted
     }
 
-    /// T^T v over the unknowns, where T has the derivatives as coefficients.
+    /// The product T^T v over the unknowns, where T has the derivatives as coefficients.
     pub fn restrict_derivatives(&self, v: &[f64]) -> Vec<f64> {
         let mut restricted = vec![0.0; self.unknowns];
         for (dof, value) in v.iter().enumerate() {
@@ -285,35 +286,35 @@ impl Rotation {
         self.nodes.is_empty()
     }
 
-    /// v <- R v, `v` over all dofs.
+    /// Replaces the vector `v` over all dofs by R v.
     pub fn turn(&self, v: &mut [f64]) {
         for (&[cos, sin], v) in self.nodes.iter().zip(v.chunks_exact_mut(2)) {
             rotate([cos, sin], v);
         }
     }
 
-    /// v <- R^T v, `v` over all dofs.
+    /// Replaces the vector `v` over all dofs by R^T v.
     pub fn turn_back(&self, v: &mut [f64]) {
         for (&[cos, sin], v) in self.nodes.iter().zip(v.chunks_exact_mut(2)) {
             rotate([cos, -sin], v);
         }
     }
 
-    /// v <- R v of one node.
+    /// Replaces the vector v of one node by R v.
     pub fn turn_node(&self, node: usize, v: &mut [f64; 2]) {
         if let Some(&[cos, sin]) = self.nodes.get(node) {
             rotate([cos, sin], v);
         }
     }
 
-    /// v <- R^T v of one node.
+    /// Replaces the vector v of one node by R^T v.
     pub fn turn_node_back(&self, node: usize, v: &mut [f64; 2]) {
         if let Some(&[cos, sin]) = self.nodes.get(node) {
             rotate([cos, -sin], v);
         }
     }
 
-    /// row <- row R, where `row` is over the given dofs: x and y of each node after the other.
+    /// Replaces `row` by row R; the row is over the given dofs: x and y of each node after the other.
     pub fn turn_row(&self, dofs: &[usize], row: &mut [f64]) {
         for (dofs, entries) in dofs.chunks_exact(2).zip(row.chunks_exact_mut(2)) {
             if let Some(&[cos, sin]) = self.nodes.get(dofs[0] / 2) {

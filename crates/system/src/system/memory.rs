@@ -8,14 +8,14 @@ use super::portable::memory_limits;
 #[cfg(unix)]
 use super::unix::memory_limits;
 
-/// Largest number of bytes of this process that were resident so far; `None` if the system does not report it.
+/// Largest number of bytes of this process that were resident so far; `None` if the system does not report this number.
 pub fn peak_memory() -> Option<u64> {
     kilobytes(&read_to_string("/proc/self/status").ok()?, "VmHWM:")
 }
 
-/// Number of free bytes: the smallest of those on the machine (with swap), in the control groups of this process that
-/// have a limit, and below the limits of the process itself (`ulimit -v`, `ulimit -d`). `None` if the system does not
-/// report it.
+/// Number of free bytes: on the machine (with swap), in the control groups of this process with a limit, or below the
+/// limits of the process itself (`ulimit -v`, `ulimit -d`), whichever number is smallest. `None` if the system does not
+/// report the free memory.
 pub fn free_memory() -> Option<u64> {
     let machine = read_to_string("/proc/meminfo").ok()?;
     let swap = kilobytes(&machine, "SwapFree:").unwrap_or(0);
@@ -33,7 +33,7 @@ fn free_in_process() -> impl Iterator<Item = u64> {
     limits.filter_map(move |(limit, used)| Some(limit?.saturating_sub(kilobytes(&status, used)?)))
 }
 
-/// Folders of the control group in a line of /proc/self/cgroup (version 2), and of the groups around it.
+/// Folders of the control group in a line of /proc/self/cgroup (version 2), and of the groups around this group.
 fn group_folders(line: &str) -> Vec<PathBuf> {
     let path = line.strip_prefix("0::/").map(Path::new);
     let root = Path::new("/sys/fs/cgroup");

@@ -1,4 +1,5 @@
-//! Functions that differ between operating systems. Everything above this module is the same on all operating systems.
+//! Functions that differ between operating systems. All modules that use this module are the same on all operating
+//! systems.
 //!
 //! | functions | Linux | other Unix, macOS | others |
 //! |---|---|---|---|
@@ -58,7 +59,7 @@ pub fn without_links(options: &mut OpenOptions) -> &mut OpenOptions {
     here::without_links(options)
 }
 
-/// Whether an open file still has this name; a link to the file does not count.
+/// Whether an open file still has the given name; a link to the file does not count.
 pub fn is_at(file: &File, path: &Path) -> bool {
     here::is_at(file, path)
 }
@@ -66,13 +67,13 @@ pub fn is_at(file: &File, path: &Path) -> bool {
 /// Reserves disk space for `length` bytes of a file behind its first `from` bytes; the size of the file stays the same.
 ///
 /// # Errors
-/// `StorageFull`, `QuotaExceeded` or `FileTooLarge` means that there is no such space; any other error means that the
+/// `StorageFull`, `QuotaExceeded` or `FileTooLarge` means that the disk lacks the space; any other error means that the
 /// system or the file system cannot reserve space.
 pub fn reserve(file: &File, from: u64, length: u64) -> io::Result<()> {
     here::reserve(file, from, length)
 }
 
-/// Number of free bytes on the disk of a file; `None` if the system does not report it.
+/// Number of free bytes on the disk of a file; `None` if the system does not report this number.
 pub fn free_space(file: &File) -> Option<u64> {
     here::free_space(file)
 }
@@ -89,7 +90,8 @@ pub fn in_large_pages(memory: MmapMut) -> MmapMut {
     memory
 }
 
-/// Runs another program in place of this one. The function returns only if the other program cannot be started.
+/// Runs another program in place of the present program. The function returns only if the other program cannot be
+/// started.
 pub fn hand_over(command: &mut Command) -> io::Error {
     here::hand_over(command)
 }

@@ -10,7 +10,7 @@ use serde_json::{Map, Value as Json, json};
 use std::fmt::Write;
 
 /// Markdown text of the keyword reference: tables by task of the keywords that are read, an index by name, a section
-/// for each of these keywords, and tables of the keywords that are not read.
+/// for each keyword that is read, and tables of the keywords that are not read.
 pub fn keyword_reference() -> String {
     let read: Vec<&Keyword> = keywords().filter(|k| k.status == Status::Read).collect();
     let mut text = String::from(HEAD);
@@ -110,7 +110,8 @@ An error stops the run before it begins. These are errors:
 
 ";
 
-/// The row of a keyword in the tables at the beginning of the reference: its levels and its first sentence.
+/// The row of a keyword in the tables at the beginning of the reference: the levels of the keyword and the first
+/// sentence about it.
 fn push_entry(text: &mut String, keyword: &Keyword) {
     let sentence = keyword
         .text
@@ -154,7 +155,8 @@ fn push_keyword(text: &mut String, keyword: &Keyword) {
     let _ = write!(text, "\n```\n{}\n```\n", keyword.example);
 }
 
-/// The rows of a parameter and its values: those that are read go to `read`, all others to `other`.
+/// The rows of a parameter and its values: rows of values that the program reads go to `read`, all other rows to
+/// `other`.
 fn push_parameter(read: &mut String, other: &mut String, parameter: &Parameter) {
     let (form, text) = (written(parameter), plain(&meaning(parameter)));
     if parameter.status != Status::Read {
@@ -226,13 +228,14 @@ impl Parameter {
 }
 
 impl DataLineForm {
-    /// The fields of a kind of data line as the reference writes them, with the condition for this kind.
+    /// The fields of a kind of data line as the reference writes them, with the condition under which a line is of this
+    /// kind.
     pub fn explanation(&self) -> String {
         form(self).replace('`', "")
     }
 }
 
-/// What the program does with a keyword, in words.
+/// Words for the treatment of a keyword by the program.
 fn treatment(keyword: &Keyword) -> String {
     match keyword.status {
         Status::Read => {
@@ -358,7 +361,7 @@ pub(super) fn written(parameter: &Parameter) -> String {
     }
 }
 
-/// Meaning of a parameter, with its dimension.
+/// Meaning of a parameter, with the dimension of its value.
 pub(super) fn meaning(parameter: &Parameter) -> String {
     match parameter.holds.dimension() {
         Some(dimension) => format!("{} ({dimension})", parameter.text),
@@ -398,7 +401,8 @@ fn condition(form: &DataLineForm) -> String {
     }
 }
 
-/// Dimensions of the numbers of accepted keywords, as JSON: an object with an entry for every keyword, each on a line.
+/// Dimensions of the numbers of accepted keywords, as JSON: an object with an entry for every keyword, one entry on a
+/// line.
 pub fn dimensions_json() -> String {
     let entries: Vec<String> = keywords().filter_map(entry).collect();
     format!("{{\n{}\n}}\n", entries.join(",\n"))

@@ -1,5 +1,5 @@
 //! The table of all keywords, joined from its families, with the dimensions of their fields; look-up by name, and the
-//! documents made from it. Words that are no keywords, with the cards to use in their place.
+//! documents made from it. Also words that are no keywords, with the cards to use in place of these words.
 
 mod documents;
 mod table;
@@ -17,7 +17,7 @@ use super::text::fold;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-/// The families of keywords: the title of each, and the text of its part of the table.
+/// The families of keywords: the title of each family, and the text of its part of the table.
 const FAMILIES: [(&str, &str); 6] = [
     (
         "Bodies: nodes, elements, sets, surfaces, parts",
@@ -54,7 +54,7 @@ pub fn keywords() -> impl Iterator<Item = &'static Keyword> + Clone {
     ALL.iter()
 }
 
-/// The keyword with this name, blanks and case aside.
+/// The keyword with a given name; blanks and case do not matter.
 pub fn find_keyword(name: &str) -> Option<&'static Keyword> {
     static INDEX: LazyLock<HashMap<String, &'static Keyword>> =
         LazyLock::new(|| keywords().map(|k| (fold(k.name), k)).collect());

@@ -1,4 +1,5 @@
-//! The keyword table from its texts, `mesh.txt` and further files in this folder, one for each family of keywords:
+//! The keyword table from its texts, `mesh.txt` and further files in the folder of this module, one for each family of
+//! keywords:
 //!
 //! ```text
 //! *AMPLITUDE @ model step, required           its levels, and its data lines
@@ -16,14 +17,15 @@
 //! *FILTER, *PRINT @ warned                    keywords that are not read
 //! ```
 //!
-//! The levels are `part` (which means instances too), `assembly`, `model`, `step` and `first-step`; `anywhere` means
-//! all of them. In decks without parts, cards of parts and the assembly stand at the level of the model. A card of the
-//! level `part` that stands in a step belongs to the model, and so does a card of the level `model` in the first step.
-//! `under *X` means the block of another keyword; `structure` is the place of the keywords that make up parts and the
-//! assembly.
+//! The levels are `part` (which includes instances), `assembly`, `model`, `step` and `first-step`; `anywhere` means all
+//! levels. In decks without parts, cards of parts and the assembly stand at the level of the model. A card of the level
+//! `part` that stands in a step belongs to the model, and so does a card of the level `model` in the first step. `under
+//! *X` means the block of another keyword; `structure` is the place of the keywords that begin and end parts, instances
+//! and the assembly.
 //!
 //! A field whose own name is a kind of object, alone or behind `or`, holds the name of such an object: `surface`, `node
-//! or node set`. A field with another name has the kind in brackets, as parameters have: `slave [surface]`.
+//! or node set`. A field with another name has the kind of its object in brackets, as parameters have: `slave
+//! [surface]`.
 //!
 //! A line that begins with four blanks continues the line before; a line that begins with two stars is a comment.
 
@@ -34,7 +36,7 @@ use super::types::{
     Value,
 };
 
-/// Adds the keywords of a text in its order to those of earlier texts, whose parameters it may name.
+/// Adds the keywords of a text, in its order, to the keywords of earlier texts, whose parameters the text may name.
 pub(super) fn read(text: &'static str, all: &mut Vec<Keyword>) {
     for entry in lines(text).chunk_by(|_, line| !line.starts_with('*')) {
         let (head, of_entry) = entry.split_first().unwrap_or((&"", &[]));
@@ -73,7 +75,7 @@ pub(super) fn read(text: &'static str, all: &mut Vec<Keyword>) {
     }
 }
 
-/// The keywords with their levels; a keyword of a block has the levels of the keyword that begins the block.
+/// The keywords with their levels; a keyword within a block has the levels of the keyword that begins the block.
 pub(super) fn with_levels(mut all: Vec<Keyword>) -> Vec<Keyword> {
     let scopes: HashMap<&str, Scope> = all.iter().map(|k| (k.name, k.scope)).collect();
     let of = |name: &str| match scopes.get(name) {
@@ -92,7 +94,7 @@ pub(super) fn with_levels(mut all: Vec<Keyword>) -> Vec<Keyword> {
     all
 }
 
-/// The lines without comments, each joined with the lines that continue it.
+/// The lines without comments, each joined with its continuation lines.
 pub(super) fn lines(text: &'static str) -> Vec<&'static str> {
     let mut lines: Vec<String> = Vec::new();
     let is_said = |line: &&str| !line.is_empty() && !line.starts_with("**");
@@ -157,7 +159,7 @@ fn with_status(text: &'static str) -> (&'static str, Status) {
     found.unwrap_or((text, Status::Read))
 }
 
-/// The parameters of an entry; `known` are the keywords of the entries before it.
+/// The parameters of an entry; `known` are the keywords of the entries before this entry.
 fn parameters(lines: &[&'static str], known: &[Keyword]) -> &'static [Parameter] {
     let mut all: Vec<Parameter> = Vec::new();
     for (index, line) in lines.iter().enumerate() {

@@ -44,7 +44,7 @@ impl Levels {
         Levels(bits.fold(0, |all, bit| all | bit))
     }
 
-    /// The union of these levels and `other`.
+    /// The union of two sets of levels.
     pub fn and(self, other: Levels) -> Levels {
         Levels(self.0 | other.0)
     }
@@ -54,8 +54,8 @@ impl Levels {
         self.0 & Levels::of(&[level]).0 != 0
     }
 
-    /// Whether cards of these levels belong to the mesh or join its parts: such cards define something that steps refer
-    /// to.
+    /// Whether cards of some levels belong to the mesh or join its parts: such cards define objects to which steps
+    /// refer.
     pub fn are_of_mesh(self) -> bool {
         self.has(Level::Part) || self.has(Level::Assembly)
     }
@@ -74,33 +74,33 @@ impl Levels {
 /// Where a keyword may stand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
-    /// The keyword stands by itself, at these levels.
+    /// The keyword stands by itself, at the given levels.
     At(Levels),
-    /// The keyword stands in the block of the keyword with this name.
+    /// The keyword stands in the block of the named keyword.
     Block(&'static str),
-    /// The keyword stands in the block of the first keyword, which is of the model, or right after the second, which is
-    /// of steps.
+    /// The keyword stands in the block of the first named keyword (at the model level), or right after the second named
+    /// keyword (in a step).
     BlockOrAfter(&'static str, &'static str),
-    /// The keyword stands in the block of the keyword with this name, or by itself at the level of the model.
+    /// The keyword stands in the block of the named keyword, or by itself at the level of the model.
     BlockOrModel(&'static str),
     /// The keyword begins or ends a part, an instance or the assembly.
     Structure,
 }
 
-/// Data lines of a keyword.
+/// Data lines that a keyword may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Data {
     /// The keyword has no data lines.
     None,
-    /// Any number of rows is allowed; of the forms, the first one that fits a row holds.
+    /// Any number of rows is allowed; a row has the first of the forms that fits.
     Rows(&'static [DataLineForm]),
-    /// The keyword needs at least one row; of the forms, the first one that fits a row holds.
+    /// The keyword needs at least one row; a row has the first of the forms that fits.
     Required(&'static [DataLineForm]),
     /// Free text.
     Text,
     /// The data lines are words that the program does not read.
     Words,
-    /// The data lines may hold anything; the program does not read them.
+    /// The data lines may hold anything; the program does not read these lines.
     Skipped,
 }
 
@@ -141,7 +141,7 @@ pub enum Kind {
     Orientation,
     /// Circles on which faces of a surface lie.
     SurfaceSmoothing,
-    /// How nodes of general contact are moved at the start.
+    /// A rule by which nodes of general contact are moved at the start.
     ContactInitialization,
     /// A tie between surfaces.
     Tie,
@@ -190,12 +190,12 @@ impl Kind {
         }
     }
 
-    /// The kind with this name.
+    /// The kind with a given name.
     fn named(name: &str) -> Option<Kind> {
         Kind::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// The kind that a text names, alone or behind ` or `.
+    /// The kind of object that a text names, alone or behind ` or `.
     fn at_end_of(text: &str) -> Option<Kind> {
         let last = text.rsplit_once(" or ").map_or(text, |(_, last)| last);
         Kind::named(last)
@@ -207,7 +207,7 @@ impl Kind {
 pub struct Keyword {
     /// The keyword without its star, with blanks.
     pub name: &'static str,
-    /// What the program does with the keyword.
+    /// Treatment of the keyword by the program.
     pub status: Status,
     /// Where the keyword may stand.
     pub scope: Scope,
@@ -219,10 +219,11 @@ pub struct Keyword {
     pub parameters: &'static [Parameter],
     /// Sentences that say what the keyword does.
     pub text: &'static str,
-    /// Lines of a deck that use the keyword, or that replace it if it is not read; empty if there are none.
+    /// Lines of a deck that use the keyword, or that replace a keyword that is not read; empty if there are no such
+    /// lines.
     pub example: &'static str,
-    /// Whether the keyword asks for output: unknown parts of such a card are left out, because they do not change the
-    /// results.
+    /// Whether the keyword asks for output: unknown parts of such a card are left out, because these parts do not
+    /// change the results.
     pub is_output: bool,
     /// Task of the keyword: the title of its family.
     pub task: &'static str,
@@ -235,7 +236,7 @@ impl Keyword {
         both.filter(|name| !name.is_empty())
     }
 
-    /// The parameter with this name; blanks and case do not matter.
+    /// The parameter with a given name; blanks and case do not matter.
     pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
         let folded = fold(name);
         let is_meant = |p: &&Parameter| [p.name, p.other].map(fold).contains(&folded);
@@ -253,7 +254,7 @@ impl Keyword {
         }
     }
 
-    /// Kind of the object that a card of this keyword defines or extends, and the parameter that names the object.
+    /// Kind of the object that a card of the keyword defines or extends, and the parameter that names the object.
     pub fn definition(&self) -> Option<(&'static Parameter, Kind)> {
         let mut parameters = self.parameters.iter();
         parameters.find_map(|parameter| match parameter.holds {
@@ -263,16 +264,16 @@ impl Keyword {
     }
 }
 
-/// What the program does with a keyword, a parameter or a value.
+/// Treatment of a keyword, a parameter or a value by the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
     /// The program reads and obeys the keyword, parameter or value.
     Read,
-    /// The program leaves it out silently, because it does not affect the results.
+    /// The program leaves the keyword, parameter or value out silently, because this does not affect the results.
     Ignored,
-    /// The program leaves it out or replaces it, with a warning.
+    /// The program leaves the keyword, parameter or value out, or replaces it, with a warning.
     Warned,
-    /// The program stops with an error, because leaving it out would change the results.
+    /// The program stops with an error, because leaving the keyword, parameter or value out would change the results.
     Refused,
 }
 
@@ -285,9 +286,9 @@ pub enum Takes {
     Value,
     /// The value may be left out.
     Optional,
-    /// The value is one of these words.
+    /// The value is one of the listed words.
     Choice(&'static [Value]),
-    /// The value is one of these words, or it is left out.
+    /// The value is one of the listed words, or the value is left out.
     OptionalChoice(&'static [Value]),
 }
 
@@ -296,9 +297,9 @@ pub enum Takes {
 pub struct Value {
     /// The word, with blanks.
     pub name: &'static str,
-    /// What the program does with the word.
+    /// Treatment of the word by the program.
     pub status: Status,
-    /// One sentence about the word; empty where the word explains itself.
+    /// One sentence about the word; empty if the word explains itself.
     pub text: &'static str,
 }
 
@@ -314,13 +315,13 @@ impl Value {
 pub struct Parameter {
     /// The word before the equals sign, with blanks.
     pub name: &'static str,
-    /// A second name of the parameter; empty if there is none.
+    /// A second name of the parameter; empty if the parameter has no second name.
     pub other: &'static str,
     /// Values of the parameter.
     pub takes: Takes,
     /// Quantity that a value of the parameter holds.
     pub holds: Quantity,
-    /// What the program does with the parameter.
+    /// Treatment of the parameter by the program.
     pub status: Status,
     /// One sentence.
     pub text: &'static str,
@@ -344,24 +345,24 @@ impl Parameter {
     }
 }
 
-/// What the value of a field or of a parameter holds.
+/// Content of the value of a field or of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// A word, a label, or a number that is the same in all units.
     Plain,
-    /// A number of this dimension, written as in the result file: `mass/length^3`.
+    /// A number of the given dimension, written as in the result file: `mass/length^3`.
     Of(&'static str),
     /// A number of the given dimension, and its default.
     OfOr(&'static str, &'static str),
-    /// A number of this dimension, or the name of an object of this kind.
+    /// A number of the given dimension, or the name of an object of the given kind.
     OrName(&'static str, Kind),
-    /// The name of an object of this kind; a word or a label may stand in its place.
+    /// The name of an object of the given kind; a word or a label may stand in its place.
     Name(Kind),
-    /// The name of an object of this kind that the card defines or extends.
+    /// The name of an object of the given kind that the card defines or extends.
     New(Kind),
     /// The path of a file; the card reads the file.
     File,
-    /// A number whose dimension is not known: other codes disagree on it.
+    /// A number whose dimension is not known: other codes disagree on the dimension.
     Unknown,
 }
 
@@ -437,12 +438,12 @@ impl Field {
 /// The fields of one form of data line, and the conditions under which a line has this form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DataLineForm {
-    /// Parameter and value of the keyword line that these lines belong to; an empty value stands
-    /// for a parameter without value.
+    /// Parameter and value of the keyword line for which lines have the form; an empty value stands for a parameter
+    /// without value.
     pub parameter: Option<(&'static str, &'static str)>,
-    /// Number of a field, from 0, and the words that may stand in this field in lines of this form.
+    /// Number of a field, from 0, and the words that may stand in this field in lines of the form.
     pub word: Option<(usize, &'static [&'static str])>,
-    /// Whether only the first data line has this form.
+    /// Whether only the first data line of a card may have the form.
     pub first: bool,
     /// The fields between commas.
     pub fields: &'static [Field],
@@ -467,8 +468,9 @@ impl DataLineForm {
         self.fields.get(index).copied()
     }
 
-    /// Whether a line with these `fields` has this form. `is_first` says whether the line is the first of its card;
-    /// `given` is the value of a parameter of the card: empty for a parameter without value, `None` for an absent one.
+    /// Whether a line with the given `fields` has the form. `is_first` says whether the line is the first of its card;
+    /// `given` is the value of a parameter of the card: empty for a parameter without value, `None` for an absent
+    /// parameter.
     pub fn fits<'w>(
         &self,
         fields: &[&str],

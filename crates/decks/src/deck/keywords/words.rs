@@ -1,4 +1,4 @@
-//! Words of engineers and of other programs that are no keywords, and the cards to use in their place, from
+//! Words of engineers and of other programs that are no keywords, and the cards to use in place of these words, from
 //! `words.txt`.
 //!
 //! ```text
@@ -15,14 +15,14 @@ use crate::deck::text::fold;
 use crate::diagnostics::wrapped;
 use std::sync::LazyLock;
 
-/// Words for one thing that other cards do, or that the program does not do.
+/// Words for one task, which other cards do or the program does not do.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Word {
-    /// All words for the thing.
+    /// All words for the task.
     pub names: Vec<&'static str>,
-    /// Sentence that says whether the program does it, and which cards to use.
+    /// Sentence that says whether the program does the task, and which cards to use.
     pub text: &'static str,
-    /// Lines of a deck that do the thing; empty if there are none.
+    /// Lines of a deck that do the task; empty if there are no such lines.
     pub example: String,
 }
 
@@ -37,7 +37,7 @@ pub fn words() -> impl Iterator<Item = &'static Word> {
     ALL.iter()
 }
 
-/// The entry of a word. Blanks, hyphens and case do not matter; neither does an `s` at the end of the word.
+/// The entry of a word. Blanks, hyphens, case and an `s` at the end of the word do not matter.
 pub fn find_word(typed: &str) -> Option<&'static Word> {
     let typed = folded(typed);
     let has = |typed: &str| words().find(|word| word.names.iter().any(|n| folded(n) == typed));
@@ -61,7 +61,7 @@ fn entry(lines: &[&'static str]) -> Word {
 }
 
 impl Word {
-    /// Text of an entry for the screen: the words, the sentence about them, and an example.
+    /// Text of an entry for the screen: the words, the sentence about these words, and an example.
     pub fn explanation(&self) -> String {
         let names = wrapped(&self.names.join(", "), 2);
         let mut text = format!("{names}\n{}", wrapped(self.text, 0));

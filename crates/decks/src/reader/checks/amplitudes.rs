@@ -64,8 +64,8 @@ fn window(amplitude: &Amplitude, step: &Step, start: f64) -> [f64; 2] {
     [from, from + step.increments.period]
 }
 
-/// Indices of the amplitudes that loads and prescribed displacements of a step follow. Amplitudes of prescribed rates
-/// are not among them, because rates are integrated exactly.
+/// Indices of the amplitudes that loads and prescribed displacements of a step follow. The list leaves out amplitudes
+/// of prescribed rates, because rates are integrated exactly.
 fn followed(step: &Step) -> BTreeSet<usize> {
     fn of_loads<T>(loads: &[Load<T>]) -> impl Iterator<Item = usize> + '_ {
         let acting = loads.iter().filter(|load| load.magnitude != 0.0);
@@ -146,7 +146,7 @@ fn tops(points: &[(f64, f64)]) -> Vec<[usize; 2]> {
     tops
 }
 
-/// Time at which a curve meets a value, in the first of some intervals in which it does.
+/// Time at which a curve meets a value, in the first of some intervals that contain such a time.
 fn crossing(
     points: &[(f64, f64)],
     mut intervals: impl Iterator<Item = usize>,
@@ -212,7 +212,7 @@ impl Displacements {
         }
     }
 
-    /// Displacements at the end of a step that starts at this time.
+    /// Displacements at the end of a step that starts at a given time.
     fn after(&self, model: &Model, step: &Step, start: f64) -> Self {
         let end = |&Support { dof, motion }: &Support| {
             let u = match motion {

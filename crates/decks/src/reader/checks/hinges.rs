@@ -7,14 +7,13 @@ use crate::model::{Model, RigidBody, Step};
 use crate::reader::context::Context;
 use crate::vectors::{difference, length};
 
-/// Relative size of the part of a row of C, at hinges and in units of its own, that is independent of earlier rows:
-/// below this size the row follows from earlier rows. The square of the size is where the run takes an eigenvalue as
-/// zero.
+/// Relative size of the part of a row of C that is independent of earlier rows; below this size the row follows from
+/// earlier rows. The square of the relative size is the bound below which a run counts an eigenvalue as zero.
 const FOLLOWS: f64 = 1e-6;
 
-/// Reports hinges whose rows of C in (11.8) follow from the rows before them and the supports of a step: with such
-/// hinges the step would stop. A row whose two nodes are held alike by supports has no effect and is not checked.
-/// `spans` holds the places of the hinges.
+/// Reports hinges whose rows of C in eq. (11.8) follow from earlier rows and the supports of a step: with such hinges
+/// the step would stop. A row whose two nodes are held alike by supports has no effect and is not checked. `spans`
+/// holds the places of the hinges.
 pub(crate) fn hinges(model: &Model, spans: &[Span], cx: &mut Context) {
     for (number, step) in model.steps.iter().enumerate() {
         let mut independent: Vec<DVector<f64>> = Vec::new();
@@ -43,8 +42,8 @@ pub(crate) fn hinges(model: &Model, spans: &[Span], cx: &mut Context) {
     }
 }
 
-/// Row of C of a hinge along an axis. The columns of the row are displacements of the reference nodes of all bodies,
-/// and angles times the largest arm; columns of prescribed dofs are zero.
+/// Row of C of a hinge along an axis. The columns of the row belong to the displacements of the reference nodes of all
+/// bodies, and to the angles times the largest arm; columns of prescribed dofs are zero.
 fn row(model: &Model, step: &Step, nodes: [usize; 2], axis: usize) -> DVector<f64> {
     let mut row = DVector::zeros(3 * model.rigid_bodies.len());
     let is_free = |dof: usize| step.motion_of(dof).is_none();

@@ -121,7 +121,7 @@ fn shape(index: usize, mesh_index: &MeshIndex, span: Span, cx: &mut Context) {
     cx.error(Code::BadShape, span, fault).help(help);
 }
 
-/// Smallest distance of a node between two corners from either corner, relative to the length of the side: if the node
+/// Smallest distance of a node between two corners from either corner, relative to the length of the side. If the node
 /// lies at a quarter of a straight side, det(dX/dr) vanishes at the corner.
 const NEAR_CORNER: f64 = 0.25;
 
@@ -223,8 +223,8 @@ pub(super) fn unusable(what: &str, value: f64, span: Span, cx: &mut Context) {
         .help("choose units in which the numbers of the deck are not so extreme");
 }
 
-/// Distance, relative to the shortest element side, below which two nodes lie at the same place: mesh generators write
-/// about as many digits.
+/// Distance, relative to the shortest element side, below which two nodes lie at the same place; the value corresponds
+/// to the number of digits that mesh generators write.
 const SAME_PLACE: f64 = 1e-6;
 
 /// Largest absolute value up to which a whole number keeps its value as an integer.
@@ -260,8 +260,8 @@ pub(crate) fn coincident_nodes(model: &Model, shortest: f64, places: &[Span], cx
         .help("the elements part there: merge the nodes, or define contact between the surfaces");
 }
 
-/// The largest whole number up to x. The processors that the program is built for have no instruction for it, only an
-/// instruction that cuts off the digits behind the point.
+/// The largest whole number that is at most x. The processors for which the program is built have no instruction that
+/// rounds down, only an instruction that cuts off the digits behind the point.
 fn floor(x: f64) -> f64 {
     if x.abs() > MOST_WHOLE {
         return x.floor();
@@ -301,8 +301,8 @@ impl Joined {
     }
 }
 
-/// Pairs of nodes of elements at the same place, the smaller index first; `cell` is the length of the shortest element
-/// side.
+/// Pairs of nodes of elements at the same place, with the smaller index first; `cell` is the length of the shortest
+/// element side.
 fn coincident(mesh: &Mesh, cell: f64) -> Vec<[usize; 2]> {
     let mut used = vec![false; mesh.node_count()];
     for &node in mesh.elements.iter().flat_map(|element| &element.nodes) {
@@ -331,7 +331,7 @@ struct Grid {
     cell: f64,
     /// Last node in the cells of every key; several cells may share a key.
     last: Vec<u32>,
-    /// For every node, the node that was added before it under the same key.
+    /// For every node, the node that was added before this node under the same key.
     before: Vec<u32>,
 }
 
@@ -348,13 +348,13 @@ impl Grid {
         }
     }
 
-    /// Adds a node to the cell with the first of these columns and rows.
+    /// Adds a node to the cell with the first of the given columns and rows.
     fn add(&mut self, node: usize, [[i, _], [j, _]]: [[u64; 2]; 2]) {
         let key = self.key(i, j);
         self.before[node] = std::mem::replace(&mut self.last[key], node as u32);
     }
 
-    /// Visits the nodes in the cells with these columns and rows.
+    /// Visits the nodes in the cells with the given columns and rows.
     fn visit(&self, [columns, rows]: [[u64; 2]; 2], mut visit: impl FnMut(usize)) {
         let count = |[first, other]: [u64; 2]| if first == other { 1 } else { 2 };
         for &i in &columns[..count(columns)] {
@@ -369,7 +369,7 @@ impl Grid {
     }
 
     /// Numbers of the column or row of cells that holds a coordinate, and of the neighbouring column or row if the line
-    /// between the two is near.
+    /// between the two columns or rows is near.
     fn cells(&self, x: f64) -> [u64; 2] {
         // The grid is shifted so that the nodes of regular meshes lie off its lines.
         let at = x / self.cell + 0.37;

@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 const MOST_SIDES: f64 = 1e6;
 
 /// Warns about steps that end before a wave has crossed the shortest side of an element, and about increments in which
-/// a wave crosses more than a million sides; `guide` is the shortest time in which a wave crosses a side.
+/// a wave crosses more than a million sides. `guide` is the shortest time in which a wave crosses a side.
 pub(crate) fn proportion(
     steps: &[Step],
     cards: &[StepCards],
@@ -62,7 +62,7 @@ pub(crate) fn proportion(
     }
 }
 
-/// Warns at the first step about a model in which nothing ever moves.
+/// Warns at the first step about a model in which no step moves anything.
 pub(crate) fn motion(model: &Model, cards: &[StepCards], cx: &mut Context) {
     let Some(first) = cards.first() else {
         return;
@@ -190,7 +190,7 @@ pub(crate) fn braked_flight(model: &Model, places: &[MaterialPlaces], cx: &mut C
     }
 }
 
-/// For every body, whether it has a node with a support or an equation in all steps.
+/// For every body, whether the body has a node with a support or an equation in all steps.
 fn held_in_all_steps(model: &Model, bodies: &Bodies) -> Vec<bool> {
     let mut is_held = vec![true; bodies.count];
     let tied: Vec<usize> = model.equations.iter().flat_map(Equation::dofs).collect();

@@ -4,7 +4,7 @@
 //! Where elements lie over each other, the boundary of a body meets the boundary of another body or itself, or one body
 //! lies completely inside another. Where two boundaries meet, an element with an exterior side at this place overlaps
 //! an element with an exterior node. A loop of the boundary that meets no other loop lies inside as many elements as
-//! there are turns of other loops around it.
+//! other loops make turns around this loop.
 
 use crate::diagnostics::{Code, Span};
 use crate::model::{ALL_EXTERIOR, Contact, ElementsAtNodes, Face, Mesh, Model};
@@ -67,7 +67,7 @@ fn elements(model: &Model, pair: [usize; 2], count: usize) -> String {
     }
 }
 
-/// The contacts of the model as far as they act on overlapping bodies.
+/// The contacts of the model, as far as these act on overlapping bodies.
 struct Acting {
     /// Whether the model has general contact.
     is_general: bool,
@@ -104,8 +104,8 @@ impl Acting {
     }
 }
 
-/// Pairs of elements that lie over each other, the smaller index first: all pairs at places where boundaries of bodies
-/// meet; if there are none, one pair for a body inside another.
+/// Pairs of elements that lie over each other, with the smaller index first: all pairs at places where boundaries of
+/// bodies meet or, without such places, one pair for a body inside another body.
 fn overlapping(mesh: &Mesh) -> Vec<[usize; 2]> {
     let at_nodes = ElementsAtNodes::new(mesh);
     let (exterior, mut pairs) = exterior(mesh, &at_nodes);
@@ -145,7 +145,7 @@ fn exterior(mesh: &Mesh, at_nodes: &ElementsAtNodes) -> (Vec<Face>, Vec<[usize; 
     (exterior, pairs)
 }
 
-/// Pairs of an element with an exterior face and one with an exterior node that have a common part.
+/// Pairs of an element with an exterior face and an element with an exterior node that have a common part.
 fn at_boundaries(mesh: &Mesh, exterior: &[Face]) -> Vec<[usize; 2]> {
     let mut is_rim = vec![false; mesh.node_count()];
     for node in exterior.iter().flat_map(|face| face.nodes(mesh)) {
@@ -171,8 +171,8 @@ fn at_boundaries(mesh: &Mesh, exterior: &[Face]) -> Vec<[usize; 2]> {
     pairs.filter(have_common_part).collect()
 }
 
-/// Whether two convex polygons have a common part that is wide in every direction: no side of either
-/// parts them (separating axes).
+/// Whether two convex polygons have a common part that is wide in every direction: no side of either polygon separates
+/// the two (separating axes).
 fn have_common_part(p: &[[f64; 2]], q: &[[f64; 2]]) -> bool {
     let extent = |polygon: &[[f64; 2]], along: [f64; 2]| {
         let places = polygon.iter().map(|&x| dot(x, along));
@@ -204,7 +204,7 @@ struct Loop {
     place: [f64; 2],
 }
 
-/// Pairs of an element at a loop of a boundary and an element that this loop lies in, for loops that meet no other
+/// Pairs of an element at a loop of a boundary and an element in which the loop lies, for loops that meet no other
 /// loop.
 fn inside(mesh: &Mesh, exterior: &[Face]) -> Vec<[usize; 2]> {
     let loops = loops(mesh, exterior);

@@ -1,5 +1,5 @@
-//! Checks of bodies of revolution: all elements must be of this kind and lie on one side of the axis, and nodes on the
-//! axis must be held on it. See docs/theory/elements.md, Bodies of revolution.
+//! Checks of bodies of revolution: all elements must be rings and lie on one side of the axis, and supports must hold
+//! nodes of the axis on the axis. See docs/theory/elements.md, Bodies of revolution.
 
 use std::collections::BTreeSet;
 
@@ -43,7 +43,7 @@ pub(crate) fn half_plane(mesh_index: &MeshIndex, cx: &mut Context) {
     }
 }
 
-/// Warns about nodes on the axis that may leave it in a step.
+/// Warns about nodes on the axis that may leave the axis in a step.
 pub(crate) fn axis(model: &Model, places: &[Span], cx: &mut Context) {
     let mesh = &model.mesh;
     if !mesh.is_axisymmetric() {
@@ -80,7 +80,7 @@ pub(crate) fn axis(model: &Model, places: &[Span], cx: &mut Context) {
     }
 }
 
-/// Nodes on the axis that are not among `held`, each with an element that has the node.
+/// Nodes on the axis that are not in the list `held`, each with an element that has the node.
 fn free_on_axis(mesh: &Mesh, held: &BTreeSet<usize>) -> Vec<(usize, usize)> {
     let mut seen = BTreeSet::new();
     let elements = mesh.elements.iter().enumerate();

@@ -7,11 +7,12 @@ use crate::lcp::{Acceleration, IterationStep};
 
 /// Ratio of successive corrections above which passes are slow.
 const SLOW: f64 = 0.1;
-/// Ratio of successive corrections above which the last passes say nothing about the next.
+/// Ratio of successive corrections above which the last passes do not help to predict the next pass.
 const JUMP: f64 = 2.0;
 /// Number of changes from pass to pass that are remembered.
 const MEMORY: usize = 5;
-/// Part of a change of the correction below which it is round-off, compared with its part along the earlier changes.
+/// Size of the new part of a change of the correction, relative to the part along the earlier changes, below which the
+/// new part is round-off.
 const DEPENDENT: f64 = 1e-6;
 
 /// Decrease of the corrections of the passes.
@@ -19,11 +20,11 @@ const DEPENDENT: f64 = 1e-6;
 pub(super) struct CorrectionProgress {
     /// Largest correction relative to the increment.
     pub correction: f64,
-    /// Largest correction relative to that of the last pass.
+    /// Largest correction relative to the largest correction of the last pass.
     pub rate: f64,
     /// Correction at which the passes end.
     pub tolerance: f64,
-    /// Whether both passes may have closed the same pairs.
+    /// Whether the pass and the pass before it may have closed the same pairs.
     pub same_pairs: bool,
 }
 
@@ -32,7 +33,7 @@ pub(super) struct CorrectionProgress {
 pub(super) struct PassAcceleration(Acceleration<1>);
 
 impl PassAcceleration {
-    /// The acceleration of a first pass, which has no earlier ones.
+    /// The acceleration before the first pass, when no steps are remembered.
     pub fn new() -> Self {
         PassAcceleration(Acceleration::new(MEMORY, DEPENDENT))
     }

@@ -21,14 +21,15 @@ use crate::dynamics::step::{
     ClosedConstraints, FactoredState, HeldMotions, Interval, StepProblem, Workspace,
 };
 
-/// Number of passes that an attempt makes in any case; further passes are made only if they will end within MAX PASSES.
+/// Number of passes that an attempt always makes; it makes further passes only if the passes will converge within MAX
+/// PASSES.
 const PATIENCE: usize = 25;
 
 /// Relative difference of lengths up to which subincrements between impacts share the factors of K*.
 const SAME_LENGTH: f64 = 1e-3;
 
-/// Relative difference of lengths within which factors of K* are kept; trials for the time of an impact differ by
-/// little.
+/// Relative difference of lengths within which factors of K* are kept; the lengths of trials for the time of an impact
+/// differ by little.
 fn length_tolerance(set: ConstraintSet) -> f64 {
     match set {
         ConstraintSet::All => 0.0,
@@ -43,7 +44,7 @@ pub(crate) struct Attempt<'a, 'm> {
     pub start: &'a State,
     pub interval: Interval,
     pub set: ConstraintSet<'a>,
-    /// The path from which the passes start, in place of the rigid motion of the bodies.
+    /// The path from which the passes start; if `None`, they start from the rigid motion of the bodies.
     pub guess: Option<&'a Path>,
 }
 
@@ -109,8 +110,8 @@ impl DynamicAttempt<'_, '_> {
         Err(trace.failed(failed, settings.tolerance))
     }
 
-    /// The slave nodes whose constraints the passes find at first. The passes find the near nodes at first if all pairs
-    /// count, factors are kept and velocities tell how far nodes go; otherwise all nodes.
+    /// The slave nodes whose constraints the passes find at first. The choice is the near nodes if all pairs count,
+    /// factors are kept and velocities tell how far nodes go; otherwise the choice is all nodes.
     fn choice(&self, rule: FactorRule) -> SlaveChoice {
         match (self.passes.set, rule) {
             (ConstraintSet::All, FactorRule::Kept)
@@ -216,8 +217,7 @@ impl DynamicAttempt<'_, '_> {
         Err(Cause::NotConverged)
     }
 
-    /// Contact forces and correction of a pass; returns the forces by which hinges close their
-    /// gaps.
+    /// Solves for contact forces and correction of a pass; returns the forces by which hinges close their gaps.
     fn balance(
         &mut self,
         contact: &mut ContactForces,
@@ -230,7 +230,7 @@ impl DynamicAttempt<'_, '_> {
         Ok(closing)
     }
 
-    /// Factorises K* anew if the rules demand it, else turns its factors with the bodies.
+    /// Factorises K* anew if the rules for factors demand this, else turns the factors of K* with the bodies.
     fn refresh(
         &mut self,
         factors: &mut Refactorization,

@@ -11,17 +11,16 @@ use crate::dynamics::step::System;
 use crate::lcp::{ContactState, Stability};
 use crate::linear::larger;
 
-/// Number of constraints by which the problem of a pass grows at least if the constraints in it
-/// leave a body free.
+/// Number of constraints by which the problem of a pass grows at least, if its constraints leave a body free.
 const FEWEST: usize = 3;
-/// Number of times that the problem grows because a body is unstable on the constraints in it.
+/// Number of times that the problem of a pass grows because a body is unstable under the constraints of the problem.
 const TIPS: usize = 3;
 
 /// Constraints, and the forces (or impulses) of the closed constraints.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactForces {
     /// The constraints of the iterate, with increasing keys. At the end of an increment the
-    /// constraints of far nodes, which are open, follow the others.
+    /// constraints of far nodes, which are open, follow the other constraints.
     pub constraints: Vec<Constraint>,
     /// The closed constraints, as pairs.
     pub closed: ClosedPairs,
@@ -51,7 +50,7 @@ struct Choice {
 }
 
 impl ContactForces {
-    /// The forces of the last increment; their constraints are not linearised any more.
+    /// Constraints with only the forces of the last increment, before the first linearisation.
     pub fn without_constraints(closed: &ClosedPairs) -> Self {
         ContactForces {
             closed: closed.clone(),
@@ -59,7 +58,7 @@ impl ContactForces {
         }
     }
 
-    /// Replaces the constraints by those of the next iterate, with the available forces, and returns the old
+    /// Replaces the constraints by the constraints of the next iterate, with the available forces, and returns the old
     /// constraints in `constraints`.
     pub fn relinearize(&mut self, constraints: &mut Vec<Constraint>) {
         std::mem::swap(&mut self.constraints, constraints);
@@ -70,12 +69,12 @@ impl ContactForces {
         self.acting().count() == self.closed.len()
     }
 
-    /// Whether the last pass closed the same pairs as the one before it.
+    /// Whether the last pass closed the same pairs as the pass before it.
     pub fn are_of_same_pairs(&self) -> bool {
         self.closed.keys().eq(self.choice.before.keys())
     }
 
-    /// All constraints, each with its closed pair, if any.
+    /// All constraints, each with its closed pair; `None` for an open constraint.
     pub fn iter(&self) -> impl Iterator<Item = (&Constraint, Option<&ClosedPair>)> + Clone {
         let mut closed = self.closed.iter().peekable();
         let constraints = self.constraints.iter();
@@ -108,15 +107,15 @@ impl ContactForces {
         }
     }
 
-    /// Solves for the contact forces of a pass, which replace those of the last pass, and writes the correction dU =
-    /// d_p + W (r + Bn^T Pn + Bt^T Pt). Here d_p is the motion of the supports, and r is the sum of all forces except
+    /// Solves for the contact forces of a pass, which replace the forces of the last pass, and writes the correction dU
+    /// = d_p + W (r + Bn^T Pn + Bt^T Pt). Here d_p is the motion of the supports, and r is the sum of all forces except
     /// contact forces (all dofs).
     ///
-    /// Constraints that the last pass left open stay out of the problem at first; in a first pass, those stay out that
-    /// y = d_p + W r leaves open. Constraints that overlap under the forces in the problem enter afterwards, so the
-    /// answer is that of all constraints. Once the passes have settled, the equal-force rule has a `weight`, and
-    /// constraints enter only if they would overlap by more than round-off. Two nodes that face each other may carry
-    /// the same force, which must not go to and fro between them.
+    /// Constraints that the last pass left open stay out of the problem at first. In the first pass, constraints that
+    /// the motion y = d_p + W r leaves open stay out. Constraints that overlap under the forces of the problem enter
+    /// afterwards, so the answer is the answer for all constraints. Once the passes have settled, the equal-force rule
+    /// has a `weight`, and constraints enter only if they would overlap by more than round-off. Otherwise a force that
+    /// two nodes facing each other can both carry would go to and fro between them.
     pub fn solve(
         &mut self,
         [d_p, r]: [&[f64]; 2],
@@ -198,7 +197,7 @@ impl ContactForces {
         }
     }
 
-    /// Marks the closed pairs that slip in the solution; Dt_f and g_f are slip and gap without contact forces,
+    /// Marks the closed pairs that slip in the solution; with slip Dt_f and gap g_f without contact forces,
     ///
     /// ```text
     /// |Dt| > 1e-10 max(|g_f|, |Dt_f|, |Dt - Dt_f|) + 1e-12 l    eq. (3.25)
@@ -217,9 +216,9 @@ impl ContactForces {
         });
     }
 
-    /// Adds to the problem as many constraints as it has, namely those with the smallest gaps of the iterate: a body
-    /// that the present constraints leave free moves on to the next ones. Returns whether there were any constraints
-    /// outside the problem.
+    /// Doubles the number of constraints in the problem, by the constraints with the smallest gaps of the iterate. A
+    /// body that the present constraints leave free moves on to the next constraints. Returns whether there were any
+    /// constraints outside the problem.
     fn enter_nearest(&self, inside: &mut [bool]) -> bool {
         let count = inside.iter().filter(|inside| **inside).count().max(FEWEST);
         let gap = |k: usize| self.constraints[k].gap / self.constraints[k].scale;
@@ -230,10 +229,10 @@ impl ContactForces {
         !outside.is_empty()
     }
 
-    /// Adds those constraints to the problem whose gaps `after` the correction would be overlaps of more than `overlap`
-    /// times their scale. If fewer than `least` constraints overlap, the nearest of the others enter with them: among
-    /// nearly redundant constraints, each one that closes makes the next one overlap. Returns whether any constraint
-    /// has entered the problem.
+    /// Adds a constraint to the problem if its gap `after` the correction would be an overlap of more than `overlap`
+    /// times its scale. If fewer than `least` constraints overlap, the nearest of the other constraints enter, too: among
+    /// nearly redundant constraints, each one that closes makes the next one overlap. Returns whether any constraint has
+    /// entered the problem.
     fn enter(
         &self,
         inside: &mut [bool],
@@ -255,7 +254,7 @@ impl ContactForces {
     }
 }
 
-/// Out of entries for all constraints, the entries of those that are in the problem.
+/// Entries of the constraints in the problem, selected from entries of all constraints.
 fn chosen<'c, 'i, T>(
     all: &'c [T],
     inside: &'i [bool],

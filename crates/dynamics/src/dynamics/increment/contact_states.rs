@@ -1,5 +1,5 @@
 //! Data of the pairs of an increment by their keys: constraint, contact force and state, impulse, and whether the pair
-//! touches at the start. The pairs closed at the start are part of the state of the start.
+//! touches at the start. The pairs closed at the start belong to the state at the start of the increment.
 
 use super::contact_forces::ContactForces;
 use super::impulses::Impulses;
@@ -14,23 +14,22 @@ pub(crate) struct ContactStates {
     pub forces: ContactForces,
     /// Impact impulses Phi and Psi at the start.
     pub impulses: Impulses,
-    /// Constraints of the iterate until they are handed over to `forces`, then those of the last
-    /// pass.
+    /// Constraints of the iterate until they are handed over to `forces`, then the constraints of the last pass.
     pub found: Vec<Constraint>,
-    /// Constraints of the iterate that do not count (inactive pairs).
+    /// Constraints of the iterate that take no part in the passes (inactive pairs).
     pub left_out: Vec<Constraint>,
-    /// Whether the coefficient of friction of a pair differs from that of the last pass.
+    /// Whether the coefficient of friction of a pair differs from its coefficient in the last pass.
     pub friction_moves: bool,
     /// The slave nodes whose constraints the passes find.
     choice: SlaveChoice,
 }
 
-/// Relative change of a coefficient of friction from which on it counts as changed.
+/// Relative change of a coefficient of friction from which on the coefficient counts as changed.
 const MOVES: f64 = 1e-9;
 
 impl ContactStates {
-    /// The pairs before the first pass: the closed ones, and those that touch at the start. The passes begin with the
-    /// constraints of the slave nodes in `choice`.
+    /// The pairs before the first pass: the closed pairs, and the pairs that touch at the start. The passes begin with
+    /// the constraints of the slave nodes in `choice`.
     pub fn new(closed: &ClosedPairs, set: ConstraintSet, choice: SlaveChoice) -> Self {
         ContactStates {
             choice,
@@ -40,9 +39,9 @@ impl ContactStates {
         }
     }
 
-    /// Writes the constraints of the iterate U, both those that count and the inactive ones; `begins` is true in the
-    /// first pass. Pairs that have not slipped get the coefficient of friction at rest, others the one of their slip
-    /// rate. With `kept`, slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
+    /// Writes the constraints of the iterate U, both the active and the inactive constraints; `begins` is true in the
+    /// first pass. Pairs that have not slipped get the coefficient of friction at rest, other pairs the coefficient at
+    /// their slip rate. Slave nodes keep their targets up to the overrun `kept` beyond the ends (segment lengths).
     pub fn find(
         &mut self,
         problem: &StepProblem,
@@ -75,7 +74,7 @@ impl ContactStates {
     }
 
     /// Adds the constraints of far slave nodes at the iterate U before an increment ends. Returns whether the
-    /// constraints of far nodes stay open, after the correction dU if there is one. If a constraint of a far node
+    /// constraints of far nodes stay open (after the correction dU, if it is given). If a constraint of a far node
     /// closes, the passes go on with the constraints of all nodes. A far node behind the line of a segment and beyond
     /// its ends has gone past the corner, so it has no constraint there.
     pub fn complete(
@@ -113,8 +112,8 @@ impl ContactStates {
         stay_open
     }
 
-    /// Sets the coefficients of friction to those of the law at the slips and forces of the last solution, at the end
-    /// of an increment.
+    /// Sets the coefficients of friction to the values of the law at the slips and forces of the last solution, at the
+    /// end of an increment.
     pub fn take_own_friction(&mut self, problem: &StepProblem, start: &State, interval: Interval) {
         let ContactForces {
             constraints,
@@ -130,19 +129,18 @@ impl ContactStates {
         (problem.frictions).give(problem.coordinates, before, constraints);
     }
 
-    /// Replaces the constraints by those of the iterate, with the available forces.
+    /// Replaces the constraints by the constraints of the iterate, with the available forces.
     pub fn relinearize(&mut self) {
         self.forces.relinearize(&mut self.found);
     }
 
-    /// Whether the pairs that the last pass closed are those with impulses, and these impulses are
-    /// exact.
+    /// Whether the pairs that the last pass closed are the pairs with impulses, and whether these impulses are exact.
     pub fn rest(&mut self, problem: &StepProblem) -> bool {
         self.impulses.rest(problem, &self.forces)
     }
 
-    /// Adds the inactive constraints to the active ones at the end of an increment. Constraints of a free node past or
-    /// at a corner that lies behind the line of the segment from which it came are left out.
+    /// Adds the inactive constraints to the active constraints at the end of an increment. A free node at or past a
+    /// corner gets no constraint there if the corner lies behind the line of the segment from which the node came.
     pub fn take_left_out(&mut self, problem: &StepProblem, u: &[f64]) {
         let at = problem.positions(u);
         let left_out = self.left_out.drain(..);

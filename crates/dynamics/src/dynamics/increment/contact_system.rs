@@ -23,15 +23,15 @@ use crate::linear::LinearError;
 pub(crate) struct Guess {
     /// State of every constraint.
     pub states: Vec<ContactState>,
-    /// Forces of every constraint, if known: of several solutions, the answer near them is sought.
+    /// Forces of every constraint, if known: of several solutions, the solution near these forces is sought.
     pub forces: Option<Vec<[f64; 2]>>,
-    /// Weight of the nearness of the answer to the known forces; without a weight the nearness
-    /// counts only if there is no answer otherwise.
+    /// Weight by which the answer is kept near the known forces; without a weight the known forces matter only if the
+    /// problem has no answer otherwise.
     pub weight: Option<f64>,
 }
 
 impl Guess {
-    /// Sets the forces to those of the pairs closed `before`; the answer is sought near them with a weight.
+    /// Sets the forces to the forces of the pairs closed `before`; with a weight the answer is sought near these forces.
     pub fn take_over(
         &mut self,
         constraints: &[&Constraint],
@@ -44,8 +44,7 @@ impl Guess {
         self.weight = weight;
     }
 
-    /// Whether the guess has forces but no weight, so an answer near the forces would be another
-    /// one.
+    /// Whether the guess has forces but no weight; with a weight the answer may be another.
     fn has_forces_only(&self) -> bool {
         self.forces.is_some() && self.weight.is_none()
     }
@@ -60,14 +59,14 @@ impl Guess {
 }
 
 impl System<'_> {
-    /// Solves for the forces of the given constraints from the constant terms of their gaps and slips. The pairs that
-    /// carry a force are written to `closed`; returns the number of pivots. With a `response`, problems of many
-    /// constraints are solved by blocks where that is faster.
+    /// Solves for the forces of the given constraints from the constant terms of their gaps and slips. The function
+    /// writes the pairs that carry a force to `closed`, and returns the number of pivots. With a `response`, problems
+    /// of many constraints are solved by blocks where that is faster.
     ///
-    /// If the problem with derivative rows has no solution, the problem with the force rows in their place is solved. Q
-    /// is then symmetric and the theorem of docs/theory/complementarity.md holds, so a ray means that pairs contradict
-    /// each other. If pairs are so nearly the same that round-off spoils both problems, the answer near the last forces
-    /// is used.
+    /// If the problem with derivative rows has no solution, the problem with force rows in place of the derivative rows
+    /// is solved. With force rows Q is symmetric and the theorem of docs/theory/complementarity.md holds, so a ray
+    /// means that pairs contradict each other. If pairs are so nearly the same that round-off spoils both problems, the
+    /// answer near the last forces is used.
     pub(super) fn solve_contact(
         &mut self,
         constraints: &[&Constraint],
@@ -93,7 +92,7 @@ impl System<'_> {
         }
     }
 
-    /// Solves with the derivative rows, else with the force rows.
+    /// Solves with the derivative rows and, if this fails, with the force rows.
     fn solve_with_rows(
         &mut self,
         constraints: &[&Constraint],
@@ -161,8 +160,8 @@ pub(super) fn closed_of<'a>(
 }
 
 /// Equal-force rule, eq. (5.3): adds eps Q_kk (P_k - P_k^0) to gaps and slips, where P^0 are the forces of the last
-/// pass. If several pairs can carry the same force, the rule selects the solution near that of the last pass; its term
-/// vanishes as the passes converge.
+/// pass. If several pairs can carry the same force, the rule selects the solution near the forces of the last pass; the
+/// term of the rule vanishes as the passes converge.
 fn add_proximal_term(problem: &mut FrictionalLcp, forces: &[[f64; 2]], weight: f64) {
     let n = forces.len();
     for (k, [pn, pt]) in forces.iter().enumerate() {
@@ -180,12 +179,12 @@ const LEAST: usize = 100;
 /// Number of constraints up to which their list needs no allocation.
 pub(super) const FEW: usize = 128;
 
-/// Least mean number of constraints in a block. The solves of an iteration cost the same for any blocks, so with
-/// smaller blocks the iteration is no faster than solving with all of Q. Two flush faces have up to four constraints of
-/// corners, which seldom carry a force.
+/// Least mean number of constraints in a block. The solves of a block iteration cost the same for blocks of any size,
+/// so with smaller blocks the iteration is no faster than one solution with all of Q. Two flush faces have up to four
+/// constraints of corners, which seldom carry a force.
 const LEAST_BLOCK: usize = 8;
 
-/// Largest part of the entries of Q within the blocks; with a larger part blocks gain nothing.
+/// Largest part of the entries of Q within the blocks; with a larger part blocks save no time.
 const WITHIN: f64 = 0.25;
 
 /// Number of constraints between the same bodies from which on they are divided along the surfaces.
@@ -202,14 +201,14 @@ const COUPLING: f64 = 0.1;
 struct GapsAndSlips<'r, 'a> {
     response: &'r mut Response<'a>,
     constraints: &'r [&'r Constraint],
-    /// eps Q_kk of eq. (5.3), zero without a weight.
+    /// Terms eps Q_kk of the equal-force rule, eq. (5.3), zero without a weight.
     proximal: Vec<[f64; 2]>,
-    /// P^0 of eq. (5.3): the forces of the last pass.
+    /// Forces P^0 of the last pass, for eq. (5.3).
     near: Vec<[f64; 2]>,
 }
 
 impl GapsAndSlips<'_, '_> {
-    /// g + G W B^T P + eps diag(Q) (P - P^0), where g are gaps and slips without contact forces.
+    /// Gaps and slips g + G W B^T P + eps diag(Q) (P - P^0), where g are the gaps and slips without contact forces.
     fn under(&mut self, system: &mut System, forces: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let constraints = self.constraints.iter().copied();
         let acting = constraints.clone().zip(forces.iter().copied());
@@ -227,8 +226,8 @@ impl GapsAndSlips<'_, '_> {
 type ProblemBlocks = (Vec<LcpBlock>, Vec<[f64; 2]>);
 
 impl System<'_> {
-    /// Positions of constraints, grouped by the bodies between which they act or by parts of surfaces; `None` if their
-    /// problem is not to be solved by blocks.
+    /// Positions of constraints, grouped by the bodies between which they act or by parts of surfaces; `None` if the
+    /// problem of the constraints is not to be solved by blocks.
     pub(super) fn by_bodies(
         &self,
         constraints: &[&Constraint],
@@ -258,8 +257,8 @@ impl System<'_> {
     }
 
     /// Solves for the forces of constraints by blocks, where `free` are their gaps and slips without these forces; the
-    /// pairs that carry a force are written to `closed`. Returns the number of pivots, or `None` if blocks gain nothing
-    /// or are coupled too strongly.
+    /// pairs that carry a force are written to `closed`. Returns the number of pivots, or `None` if a solution by
+    /// blocks saves no time or the blocks are coupled too strongly.
     fn solve_by_bodies(
         &mut self,
         response: &mut Response,
@@ -362,16 +361,16 @@ fn are_in_both_orders(constraints: &[&Constraint]) -> bool {
     })
 }
 
-/// Whether the first contact of a part is coupled strongly to all others of the part; then the part is coupled strongly
-/// to its neighbours too.
+/// Whether the first constraint of a part is coupled strongly to all other constraints of the part; if so, the part is
+/// also coupled strongly to its neighbours.
 fn is_coupled(part: &FrictionalLcp) -> bool {
     let q = |i: usize, j: usize| part.q[(i, j)];
     let coupling = |j: usize| q(0, j).abs() / (q(0, 0) * q(j, j)).sqrt();
     (1..part.len()).map(coupling).fold(1.0, f64::min) > COUPLING
 }
 
-/// u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. The sum is available at the
-/// nodes of the constraints at any time, and everywhere at the end.
+/// The response u + W (f + B^T P) for some constraints, where W is the inverse of the system matrix. The response is
+/// available at the nodes of the constraints at any time, and everywhere at the end.
 pub(super) struct Response<'a> {
     /// Displacements u, over all dofs.
     start: &'a [f64],
@@ -379,7 +378,7 @@ pub(super) struct Response<'a> {
 }
 
 impl<'a> Response<'a> {
-    /// Begins with the forces `f`, over all dofs, and P = 0.
+    /// Begins a response with the forces `f`, over all dofs, and without contact forces (P = 0).
     ///
     /// # Errors
     /// Returns an error if the matrix has no factors.
@@ -442,8 +441,8 @@ impl<'a> Response<'a> {
         found.extend(constraints.map(after));
     }
 
-    /// Tells the free motions the positions of their pins without contact forces; gaps and slips must have been asked
-    /// for before.
+    /// Tells the free motions the positions of their pins without contact forces; [`Self::gaps_and_slips`] must have
+    /// been called before.
     pub fn show_pins(&self, system: &mut System) {
         let at_nodes = &self.vectors.at_nodes;
         if let Some(free) = system.free_mut() {
@@ -488,7 +487,7 @@ impl<'a> Response<'a> {
     }
 }
 
-/// Replaces a list by the given numbers, increasing and each once.
+/// Replaces a list by the given numbers, in increasing order, each once.
 fn replace(list: &mut Vec<usize>, numbers: impl Iterator<Item = usize>) {
     list.clear();
     list.extend(numbers);

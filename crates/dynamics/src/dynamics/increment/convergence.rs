@@ -10,16 +10,17 @@ use crate::dynamics::results::{PassReport, Worst};
 use crate::dynamics::step::{Hinges, Parts, PerBody, ROUND_OFF};
 use crate::linear::larger;
 
-/// Factor on the tolerance within which an iterate must be in balance to be the solution, unless its corrections are
-/// down to round-off. A pass whose residual and correction are below the tolerance ends with an iterate that is better
-/// by the rate of the passes.
+/// Factor on the tolerance within which an iterate must be in balance to be the solution, unless its corrections have
+/// fallen to round-off. A pass whose residual and correction are below the tolerance ends with an iterate whose error
+/// is smaller by the rate of the passes.
 const BALANCED: f64 = 0.1;
-/// Round-off of the residual once corrections hardly decrease, in units of eq. (4.10): in a row of K the other entries
+/// Round-off of the residual once corrections hardly decrease, in units of eq. (4.10). In a row of K the other entries
 /// together have about as much round-off as the diagonal entry.
 const STAGNANT_NOISE: f64 = 4.0;
 
 /// Scales of residual and correction of a pass. The scales are computed, so the answer does not depend on the system of
-/// units; every part and body has its own, so that a light body next to a heavy one is solved as accurately.
+/// units. Every part and body has its own scales, so that a light body next to a heavy body is solved as accurately as
+/// the heavy body.
 pub(crate) struct Scales<'a> {
     parts: &'a Parts,
     /// Largest force in equilibrium of every part.
@@ -43,7 +44,8 @@ pub(crate) struct Lengths {
     pub position: PerBody,
 }
 
-/// Round-off of the forces of a part, with the motion and stiffness that it acts on.
+/// Round-off of the forces of a part, with the displacement increment and the stiffness with which the forces are
+/// compared.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PartNoise {
     /// Round-off n of the residual, eq. (4.10) (force).
@@ -62,12 +64,12 @@ pub(crate) struct Errors {
 
 impl<'a> Scales<'a> {
     /// Scales of a pass. `force` and `before` are the largest force in equilibrium of every part, in this pass and so
-    /// far; `stiffness` and `inertia` are the largest diagonal entries of theta2 K and (2/dt²) M of every part.
+    /// far. `stiffness` and `inertia` are the largest diagonal entries of theta2 K and (2/dt²) M of every part.
     ///
-    /// A force from displacements U carries the round-off of K U, the inertia force that of (2/dt²)
-    /// M d, and a force that closes a gap between positions x that of K* x. A residual cannot be
-    /// measured more finely than the round-off of these forces. Displacements that close a gap
-    /// carry the round-off of x.
+    /// A force from displacements U has the round-off of K U, and the inertia force has the round-off of (2/dt²) M d. A
+    /// force that closes a gap between positions x has the round-off of K* x. A residual cannot be measured more finely
+    /// than the round-off of the forces in it. Displacements that close a gap between positions x have the round-off of
+    /// x.
     pub fn new(
         parts: &'a Parts,
         [force, before]: [&PerBody; 2],
@@ -105,22 +107,22 @@ impl<'a> Scales<'a> {
     }
 
     /// Stricter scales: a part of the tolerance, and no allowance for the round-off of residuals. The stricter scales
-    /// apply as long as corrections decrease, since round-off is then not reached.
+    /// apply as long as corrections decrease, since decreasing corrections show that round-off has not been reached.
     pub fn strict(mut self) -> Self {
         self.noise.fill(0.0);
         self.tolerance *= BALANCED;
         self
     }
 
-    /// Scales with all the round-off that residuals may have, for passes that can gain nothing
-    /// more.
+    /// Scales that allow residuals all their round-off, for passes that can reduce the residual no further.
     pub fn stagnant(mut self) -> Self {
         let noise = self.noise.iter_mut();
         noise.for_each(|noise| *noise *= STAGNANT_NOISE);
         self
     }
 
-    /// Round-off of the forces of every part; `stiffness` gives the largest K_ii + (2/dt²) M_ii of each (force/length).
+    /// Round-off of the forces of every part; `stiffness` gives the largest K_ii + (2/dt²) M_ii of each part
+    /// (force/length).
     pub fn noise(&self, stiffness: impl Iterator<Item = f64>) -> Vec<PartNoise> {
         let parts = self.noise.iter().zip(self.parts.of_parts()).zip(stiffness);
         let of_part = |((force, &body), stiffness): ((&f64, &usize), f64)| PartNoise {
@@ -152,7 +154,7 @@ impl<'a> Scales<'a> {
     }
 
     /// Whether residual and correction of every part and body are below the tolerance, or round-off. If a residual is
-    /// all round-off, so is the correction that follows from it.
+    /// only round-off, the correction that follows from this residual is also only round-off.
     pub fn converged(&self, errors: &Errors) -> bool {
         let mut is_noise: SmallVec<[bool; 8]> = smallvec![true; self.increment.len()];
         for (part, &body) in self.parts.of_parts().iter().enumerate() {
@@ -169,9 +171,9 @@ impl<'a> Scales<'a> {
         })
     }
 
-    /// Whether gaps and slips of the constraints obey the contact law to the tolerance. Closed gaps are zero and open
-    /// ones not negative; a pair that has not slipped in the last solution has no slip, and a pair that slips has no
-    /// slip in the direction of its friction.
+    /// Whether gaps and slips of the constraints obey the contact law to the tolerance. Closed gaps are zero, and open
+    /// gaps are not negative. A pair that has not slipped in the last solution has no slip, and a pair that slips has
+    /// no slip in the direction of its friction.
     pub fn obeys_contact_law(&self, contact: &ContactForces, settled: bool) -> bool {
         let overlap = if settled { SETTLED_OVERLAP } else { 0.0 };
         contact.iter().all(|(constraint, pair)| {
@@ -192,15 +194,15 @@ impl<'a> Scales<'a> {
     }
 
     /// Whether the forces of a pair obey the coefficient of friction at the slip rate of the pair, if the coefficient
-    /// depends on it.
+    /// depends on the slip rate.
     fn has_own_friction(&self, constraint: &Constraint, pair: &ClosedPair) -> bool {
         let most = self.tolerance * constraint.friction() * pair.force[0];
         !constraint.mu_varies || pair.out_of_cone(constraint.friction()) <= most
     }
 
     /// Whether a pass with the correction dU closes the gaps of its closed pairs by its rows, as far as open pairs may
-    /// overlap. The gaps do not close if pairs contradict each other: the equal-force rule then lets the forces grow in
-    /// balance, and gaps stay. The gaps do not close either if supports push a body along another under the same
+    /// overlap. The gaps do not close if pairs contradict each other: the equal-force rule then lets these forces grow
+    /// in balance, while the gaps stay open. The gaps do not close if supports push a body along another under the same
     /// forces: the residual is all round-off, but slave nodes come to other segments.
     pub fn closes_gaps(&self, contact: &ContactForces, du: &[f64]) -> bool {
         contact.acting().all(|(constraint, _)| {
@@ -220,7 +222,7 @@ impl<'a> Scales<'a> {
         bodies.map(of_body).fold(round_off, larger)
     }
 
-    /// Whether the gaps of the hinges in an iterate are as small as those of closed pairs must be.
+    /// Whether the gaps of the hinges in an iterate are as small as the gaps of closed pairs must be.
     pub fn closes_hinges(&self, hinges: &Hinges, u: &[f64]) -> bool {
         let of_node = |node: usize| {
             let body = self.parts.of_nodes()[node];
@@ -264,7 +266,7 @@ impl<'a> Scales<'a> {
         self.relative(errors.residual[part], self.force[part], self.noise[part])
     }
 
-    /// `value` in units of its scale, or of its round-off over the tolerance if that is larger.
+    /// `value` in units of its scale, or of its round-off divided by the tolerance, whichever unit is larger.
     fn relative(&self, value: f64, scale: f64, floor: f64) -> f64 {
         let scale = larger(scale, floor / self.tolerance);
         if scale == 0.0 { value } else { value / scale }

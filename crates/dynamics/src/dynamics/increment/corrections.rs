@@ -2,9 +2,10 @@
 
 use crate::dynamics::results::Cause;
 
-/// Correction of a pass, relative to the increment, above which its iterate is not a solution, whatever the forces say.
+/// Correction of a pass, relative to the increment, above which the iterate of the pass is not a solution even if its
+/// forces are in balance.
 const NEAR: f64 = 1e-4;
-/// Ratio of successive corrections above which they hardly decrease.
+/// Ratio of successive corrections above which the corrections hardly decrease.
 const STAGNANT: f64 = 0.5;
 /// Number of passes after which slave nodes keep their targets; in earlier passes corrections may go to and fro with
 /// the targets.
@@ -45,12 +46,12 @@ impl Corrections {
         self.rate
     }
 
-    /// Whether the corrections hardly decrease; if they are small, they are then round-off.
+    /// Whether the corrections hardly decrease; if small corrections hardly decrease, they are round-off.
     pub fn stagnate(&self) -> bool {
         self.rate > STAGNANT
     }
 
-    /// Enters the relative correction of a pass. A growing correction is not divergence if it `may_grow`.
+    /// Enters the relative correction of a pass. A growing correction is not divergence if `may_grow` is true.
     pub fn take_in(&mut self, correction: f64, may_grow: bool) -> Result<(), Cause> {
         let is_first = self.last == f64::INFINITY;
         let rate = match correction {

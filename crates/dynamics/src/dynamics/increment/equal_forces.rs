@@ -1,14 +1,13 @@
-//! Weight of the equal-force rule: it keeps the forces of pairs that can carry the same force near those of the last
-//! pass. See docs/theory/complementarity.md, Equal-force rule.
+//! Weight of the equal-force rule: it keeps the forces of pairs that can carry the same force near their forces in the
+//! last pass. See docs/theory/complementarity.md, Equal-force rule.
 
-/// First weight: the part of the compliance of a constraint that keeps its force.
+/// First weight of the rule, as a part of the compliance of a constraint.
 pub(super) const FIRST_WEIGHT: f64 = 1e-5;
 /// Factor on the weight from pass to pass.
 const DECREASE: f64 = 0.1;
-/// Least weight: with a smaller one, the round-off of the gaps moves the forces.
+/// Least weight: with a smaller weight, the round-off of the gaps moves the forces.
 const LEAST_WEIGHT: f64 = 1e-7;
-/// Ratio of successive corrections above which they crawl: if the weight has its least value, it
-/// then falls further.
+/// Ratio of successive corrections above which corrections crawl: a weight at its least value then falls further.
 const CRAWLING: f64 = 0.7;
 /// Weight of the equal-force rule for corrections that crawl.
 const WEIGHT_OF_CRAWLING: f64 = 1e-9;
@@ -19,8 +18,8 @@ pub(super) const ROUND_OFF: f64 = 100.0;
 ///
 /// Forces of pairs that are almost the same keep changing at the rate eps/(eps + lambda), where lambda is the
 /// compliance of the pairs' difference relative to their own compliance. The weight therefore decreases from pass to
-/// pass, which makes the changes of these forces die away faster. If small corrections stay as large as before with the
-/// same weight, the round-off of the gaps moves the forces, and the weight returns to its first value.
+/// pass, which makes the changes of forces of almost equal pairs die away faster. If small corrections stay as large as
+/// before with the same weight, the round-off of the gaps moves the forces, and the weight returns to its first value.
 pub(crate) struct EqualForces {
     tolerance: f64,
     weight: f64,
@@ -31,7 +30,7 @@ pub(crate) struct EqualForces {
 }
 
 impl EqualForces {
-    /// The state before the first pass; the passes have the `tolerance`.
+    /// The state before the first pass of passes with the given `tolerance`.
     pub fn new(tolerance: f64) -> Self {
         EqualForces {
             tolerance,
@@ -42,7 +41,7 @@ impl EqualForces {
         }
     }
 
-    /// The weight of the next pass, if the passes have `settled`.
+    /// The weight of the next pass, if the search for the closed pairs is over (`settled`).
     pub fn weight(&self, settled: bool) -> Option<f64> {
         settled.then_some(self.weight)
     }
@@ -52,8 +51,8 @@ impl EqualForces {
         self.has_decreased
     }
 
-    /// Enters the relative correction of a pass; the pass used the weight if the passes have
-    /// `settled`.
+    /// Enters the relative correction of a pass; the pass used the weight if the search for the closed pairs is over
+    /// (`settled`).
     pub fn take_in(&mut self, correction: f64, settled: bool) {
         if !settled {
             return;

@@ -1,8 +1,8 @@
 //! Velocity jump at the start of an increment; the set of pairs with impact impulses is iterated
 //! along with the passes. See docs/theory/impacts.md, Impact impulses (paper eq. 30).
 //!
-//! Criterion for keeping impulses: the rows of the iterate are near enough to the rows with which they were computed.
-//! See docs/numerics.md, Kept impulses.
+//! Criterion for keeping impulses: the rows of the iterate are near enough to the rows with which the impulses were
+//! computed. See docs/numerics.md, Kept impulses.
 
 use std::borrow::Cow;
 
@@ -22,13 +22,12 @@ use crate::linear::larger;
 const SET_CHANGES: usize = 5;
 
 /// The impact impulses of an increment. Impulses act on the pairs that carry a force at the end of
-/// the increment, and on the pairs that touch at its start because an impact ended the previous
-/// subincrement.
+/// the increment, and on the pairs that touch at the start because an impact ended the previous subincrement.
 #[derive(Default)]
 pub(crate) struct Impulses {
     /// Keys of the pairs closed at the end of the last pass, increasing.
     closed: Vec<ConstraintKey>,
-    /// Keys of the pairs that touch at the start and have impulses in any case, increasing.
+    /// Keys of the pairs that touch at the start and always have impulses, increasing.
     touching: Vec<ConstraintKey>,
     changes: usize,
     at_rest: bool,
@@ -36,13 +35,13 @@ pub(crate) struct Impulses {
     forces: ContactForces,
     /// Constraints with impulses in the iterate.
     of_iterate: Vec<Constraint>,
-    /// Keys of the pairs whose impulse may use the impulse of their force (standing impulse), eq. (11.7), increasing.
+    /// Keys of the pairs whose impulse may cancel a part of the impulse of their force (standing impulse), eq. (11.7),
+    /// increasing.
     lent: Vec<ConstraintKey>,
-    /// The velocity that impulses start from in place of V0, eq. (11.5) and eq. (11.11); `None` if
-    /// it is V0.
+    /// The velocity that impulses start from in place of V0, eq. (11.5) and eq. (11.11); `None` if impulses start from
+    /// V0.
     seen: Option<Vec<f64>>,
-    /// J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty if
-    /// nothing strikes.
+    /// Impulses J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty without impulses.
     resultant: Vec<f64>,
     /// Keys and normal forces of the pairs that did not slip in the last pass, increasing.
     sticking: Vec<(ConstraintKey, f64)>,
@@ -56,12 +55,12 @@ fn sticking(closed: &ClosedPairs) -> Vec<(ConstraintKey, f64)> {
 }
 
 /// Speed of approach, as a part of the largest speed at a pair, up to which the pair neither lands nor opens. A speed
-/// whose motion in the increment is less than a solved gap counts as zero too.
+/// also counts as zero if its motion in the increment is less than the gap of a solved pair.
 const RESTING: f64 = 1e-9;
 
 impl Impulses {
-    /// Impulses before the first pass: `before` are the pairs closed in the last increment, `touching` those that touch
-    /// at the start.
+    /// Impulses before the first pass: `before` are the pairs closed in the last increment, `touching` the pairs that
+    /// touch at the start.
     pub fn new(before: &ClosedPairs, touching: Vec<ConstraintKey>) -> Self {
         Impulses {
             closed: before.keys().collect(),
@@ -76,8 +75,7 @@ impl Impulses {
         self.forces.acting()
     }
 
-    /// J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty if
-    /// nothing strikes.
+    /// Impulses J = Bn^T Phi + Bt^T Psi plus the reaction impulses of hinges, over all dofs; empty without impulses.
     pub fn resultant(&self) -> &[f64] {
         &self.resultant
     }
@@ -92,8 +90,8 @@ impl Impulses {
         self.touching.binary_search(&key).is_ok()
     }
 
-    /// Solves for the impulses Phi and Psi of the constraints of the iterate, eq. (6.2). The available impulses are
-    /// kept if they are near enough to the new ones after the pass `before`.
+    /// Solves for the impulses Phi and Psi of the constraints of the iterate, eq. (6.2). After the pass `before`, the
+    /// available impulses are kept if they are near enough to the new impulses.
     fn solve(
         &mut self,
         problem: &StepProblem,
@@ -164,7 +162,7 @@ impl Impulses {
         Ok(())
     }
 
-    /// Adds the reaction impulses C^T Lambda of the hinges to those of contact, with the arms at the start.
+    /// Adds the reaction impulses C^T Lambda of the hinges to the impulses of contact, with the arms at the start.
     fn add_hinges(
         &mut self,
         problem: &StepProblem,
@@ -211,7 +209,7 @@ impl Impulses {
     }
 
     /// Relative difference, in parts of the largest forces, between the impulses with the rows of the iterate and the
-    /// available ones; infinite if these belong to other constraints.
+    /// available impulses; infinite if the available impulses belong to other constraints.
     fn part_of_change(&self, steady: &Steady) -> f64 {
         let (struck, before) = (&self.of_iterate, &self.forces.constraints);
         let same_set = (before.iter().map(|c| c.key)).eq(struck.iter().map(|c| c.key));
@@ -229,7 +227,7 @@ impl Impulses {
 
     /// The velocity that the equilibrium of an iterate with the given constraints needs at the start. The velocity is
     /// V0+ if U_theta depends on V0+, or if the mass of bodies that turn acts by other arms in the iterate than at the
-    /// start; else it is V0, with the impulses apart, so nothing is solved with M.
+    /// start. Otherwise the velocity is V0, and the impulses enter separately without a solve with the mass matrix M.
     pub fn start_velocity<'a>(
         &'a mut self,
         problem: &StepProblem,
@@ -261,7 +259,7 @@ impl Impulses {
         Ok(StartVelocity { v0p, impulse: &[] })
     }
 
-    /// State of a pair in the last impulses; a pair that was not among them sticks if it approaches.
+    /// State of a pair in the last impulses; a pair without an impulse there sticks if it approaches.
     fn state(&self, constraint: &Constraint, v0: &[f64], dt: f64) -> ContactState {
         let key = constraint.key;
         match (self.forces.constraints).binary_search_by_key(&key, |struck| struck.key) {
@@ -277,9 +275,9 @@ impl Impulses {
         self.at_rest
     }
 
-    /// Enters the pairs in contact after a pass. Returns whether the pairs are the same as before, those with a
+    /// Enters the pairs in contact after a pass. Returns whether the pairs are the same as before, the pairs with a
     /// standing impulse still do not slip, and the impulses belong to these pairs. After some changes the set of pairs
-    /// is kept: impulses on any set remove energy and never add any.
+    /// is kept: impulses on any set of pairs remove energy and never add energy.
     pub fn rest(&mut self, problem: &StepProblem, contact: &ContactForces) -> bool {
         self.sticking = match problem.unknowns.turning.are_driven() {
             true => Vec::new(),
@@ -327,7 +325,7 @@ fn has_mass(problem: &StepProblem, constraint: &Constraint) -> bool {
 /// |Psi| <= mu Phi, Psi opposes Gt V0+
 /// ```
 ///
-/// The kinetic energy therefore never grows where G = B. The search begins with the given states.
+/// Where G = B, impulses never increase the kinetic energy. The search begins with the given states.
 ///
 /// Problems of many constraints are solved by blocks that use the given gaps and slips, so the round-off of V0 does not
 /// enter the effect of the impulses.
@@ -377,8 +375,8 @@ fn impulses(
 }
 
 /// Impulses of constraints of which some have a standing impulse P0, with Phi + P0 >= 0 in place of Phi >= 0, eq.
-/// (11.7). V0 - M^-1 Bn^T P0 is the velocity without the standing impulses. If an impulse would cancel all of its P0,
-/// this P0 is set to zero and the impulses are computed anew.
+/// (11.7). The vector V0 - M^-1 Bn^T P0 is the velocity without the standing impulses. If an impulse would cancel all
+/// of a standing impulse P0, this P0 is set to zero and the impulses are computed anew.
 fn standing_impulses(
     constraints: &[Constraint],
     mut standing: Vec<f64>,
@@ -416,7 +414,7 @@ fn standing_impulses(
     impulses(constraints, states, v0, dt, &mut system)
 }
 
-/// Part of the tolerance of forces up to which impulses may differ from those with the rows of the iterate.
+/// Part of the tolerance of forces up to which impulses may differ from the impulses with the rows of the iterate.
 const EXACT: f64 = 1e-2;
 
 /// The forces of the last pass, and the length of the increment.
@@ -495,8 +493,8 @@ impl Steady<'_> {
 }
 
 /// Change of the velocity after the impulses of a constraint if its rows change from `before` to `now`. The change is
-/// the sum of three changes: of the approach and of the slip rate, as far as the impulses of the state stop them, and
-/// of the direction of the velocity jump that stops them.
+/// the sum of three changes: of the approach and of the slip rate, as far as the impulses stop the approach and the
+/// slip rate, and of the direction of the velocity jump.
 fn change(
     before: &Constraint,
     now: &Constraint,

@@ -7,13 +7,13 @@ use crate::dynamics::results::Cause;
 use crate::dynamics::step::{Equilibrium, ForceChange, StepProblem, Workspace, difference, sum};
 use crate::linear::largest;
 
-/// Change of N dU, relative to the other forces, up to which it counts as zero.
+/// Change of the force N dU, relative to the other forces, up to which this change counts as zero.
 const NO_CHANGE: f64 = 1e-13;
-/// Largest part of the first change of N dU that is left to the next pass.
+/// Largest part of the first change of the force N dU that is left to the next pass.
 const MOST_LEFT: f64 = 1e-3;
-/// Largest number of changes of N dU in a pass.
+/// Largest number of changes of the force N dU in a pass.
 const MOST_CHANGES: usize = 3;
-/// Factor below which successive changes of N dU must fall, unless they are round-off.
+/// Ratio below which successive changes of the force N dU must stay, unless these changes are round-off.
 const FALLS: f64 = 0.5;
 
 /// Vectors of the passes of an increment.
@@ -27,9 +27,9 @@ pub(super) struct Vectors {
     pub d_p: Vec<f64>,
     /// Force theta2 K d_p of the prescribed motion.
     pub support_force: Vec<f64>,
-    /// Load r - theta2 K d_p.
+    /// Load r - theta2 K d_p of the pass.
     pub load: Vec<f64>,
-    /// d_p plus the motion that closes the gaps of the hinges.
+    /// Prescribed motion d_p plus the motion that closes the gaps of the hinges.
     pub closing: Vec<f64>,
     /// Correction dU.
     pub du: Vec<f64>,
@@ -39,13 +39,13 @@ pub(super) struct Vectors {
     pub skew: SkewPart,
 }
 
-/// The part N dU of the change of the forces in a static step that K* omits. N are the skew parts of the changes of
-/// contact forces, and of loads that follow the iterate. See docs/theory/bodies.md, Static steps.
+/// The part N dU of the change of the forces in a static step that K* omits. The matrix N holds the skew parts of the
+/// changes of contact forces and of loads that follow the iterate. See docs/theory/bodies.md, Static steps.
 #[derive(Default)]
 pub(super) struct SkewPart {
     /// Dofs of each skew part, and N over these dofs.
     parts: Vec<(Vec<usize>, DMatrix<f64>)>,
-    /// N dU over all dofs (force).
+    /// Part N dU of the change of the forces, over all dofs (force).
     force: Vec<f64>,
     /// Part of the first change of N dU that is left to the next pass.
     left: f64,
@@ -65,12 +65,12 @@ impl SkewPart {
         }
     }
 
-    /// Adds N dU to a load.
+    /// Adds the force N dU to a load.
     pub fn add_to(&self, load: &mut [f64]) {
         load.iter_mut().zip(&self.force).for_each(|(r, f)| *r += f);
     }
 
-    /// N x for a motion x of all dofs.
+    /// The product N x for a motion x of all dofs.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
         let mut force = vec![0.0; x.len()];
         for (dofs, skew) in &self.parts {
@@ -82,8 +82,8 @@ impl SkewPart {
         force
     }
 
-    /// Enters the dU of another solve. Returns whether N dU has converged, relative to the other forces, or cannot
-    /// converge further because of round-off.
+    /// Enters the correction dU of another solve. Returns whether the force N dU has converged, relative to the other
+    /// forces, or cannot converge further because of round-off.
     pub fn take_in(&mut self, du: &[f64], others: f64) -> bool {
         let force = self.product(du);
         self.force.resize(du.len(), 0.0);
@@ -99,7 +99,7 @@ impl SkewPart {
     }
 }
 
-/// Writes d_p plus the motion that closes the gaps of the hinges; returns the hinge forces of the
+/// Writes the prescribed motion d_p plus the motion that closes the gaps of the hinges; returns the hinge forces of the
 /// closing motion.
 ///
 /// ```text

@@ -17,7 +17,7 @@ pub(crate) struct Pass<'a> {
     pub equilibrium: &'a Equilibrium,
     /// Force of the prescribed motion of the supports.
     pub support_force: &'a Vec<f64>,
-    /// Constraints and their forces.
+    /// Constraints of the pass, and their contact forces.
     pub contact: &'a ContactForces,
     /// Displacement U of the iterate, increment d = U - U0 and correction dU.
     pub displacements: [&'a Vec<f64>; 3],
@@ -106,7 +106,7 @@ impl Pass<'_> {
         Scales::new(parts, [&force, before], diagonals, lengths, tolerance)
     }
 
-    /// For every body the largest coordinate of the nodes of closed constraints and hinges at it.
+    /// For every body the largest coordinate of the nodes of the closed constraints and hinges that act on the body.
     fn contact_positions(&self, problem: &StepProblem) -> PerBody {
         let [u, ..] = self.displacements;
         let mut positions: PerBody = smallvec![0.0; problem.parts.bodies()];
@@ -147,7 +147,7 @@ struct ContactForce {
 }
 
 impl ContactForce {
-    /// Writes Bn^T Pn + Bt^T Pt of eq. (3.1) over `dofs` dofs, in place of the force before.
+    /// Writes the contact force Bn^T Pn + Bt^T Pt of eq. (3.1) over `dofs` dofs, in place of the force before.
     fn write(&mut self, contact: &ContactForces, dofs: usize) {
         let Self { values, dofs: own } = self;
         own.drain(..).for_each(|dof| values[dof] = 0.0);
@@ -162,9 +162,9 @@ impl ContactForce {
 /// Progress of the passes of an increment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PassStage {
-    /// Whether the search for the closed pairs is over, so open pairs may overlap by `SETTLED_OVERLAP`.
+    /// Whether the search for the closed pairs is over; open pairs may then overlap by `SETTLED_OVERLAP`.
     pub settled: bool,
-    /// Whether corrections hardly decrease, so residuals may have all their round-off.
+    /// Whether corrections hardly decrease; residuals may then have all their round-off.
     pub stagnates: bool,
 }
 
@@ -203,7 +203,7 @@ impl<'a> Iterate<'a> {
     }
 
     /// The relative residual if the iterate is the solution, that is, if residual, gaps and slips are below the
-    /// tolerance or round-off; else `None`.
+    /// tolerance or round-off; otherwise `None`.
     pub fn residual(
         &self,
         problem: &StepProblem,

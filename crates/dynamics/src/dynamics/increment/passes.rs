@@ -18,16 +18,16 @@ use crate::dynamics::step::{
 };
 use crate::linear::larger;
 
-/// Number of passes after which further ones are accelerated, and slave nodes that go to and fro between two targets
-/// keep both.
+/// Number of passes after which further passes are accelerated, and slave nodes that go to and fro between two targets
+/// keep both targets.
 pub(super) const SLOW_PASSES: usize = 10;
 
-/// Largest error of the friction after the last pass, relative to the largest normal force. This largest error is a
-/// tenth of the limit in the certificate.
+/// Largest error of the friction after the last pass, relative to the largest normal force. The largest error of the
+/// friction is a tenth of the limit in the certificate.
 const OWN_FRICTION: f64 = 1e-10;
 
 /// Overrun beyond the ends of a segment (segment lengths) up to which slave nodes keep their targets in a pass, even if
-/// they are now at others; `None` before the pass `keeping`.
+/// the nodes are at other targets; `None` before the pass `keeping`.
 fn kept_beyond_ends(pass: usize, keeping: usize) -> Option<f64> {
     if pass < keeping {
         None
@@ -101,8 +101,8 @@ impl Passes<'_, '_> {
         (self.workspace.meter).time(|t| &mut t.assembly, evaluate)
     }
 
-    /// Writes the part d_p of the prescribed motion that the predictor leaves, its force theta2 K d_p, and r - theta2 K
-    /// d_p. The first pass makes the motion d_p; in later passes d_p is zero.
+    /// Writes the part d_p of the prescribed motion that the predictor leaves, the force theta2 K d_p, and the load r -
+    /// theta2 K d_p. The first pass performs the motion d_p; in later passes d_p is zero.
     pub fn supports(&mut self, pass: usize, vectors: &mut Vectors) {
         self.move_supports(pass, vectors);
         let Vectors {
@@ -114,7 +114,7 @@ impl Passes<'_, '_> {
         write_difference(&equilibrium.out_of_balance, support_force, load);
     }
 
-    /// Writes d_p and theta2 K d_p.
+    /// Writes the prescribed motion d_p and its force theta2 K d_p.
     fn move_supports(&mut self, pass: usize, vectors: &mut Vectors) {
         let (problem, integration) = (self.problem, &self.problem.integration);
         let Vectors {
@@ -141,8 +141,8 @@ impl Passes<'_, '_> {
         }
     }
 
-    /// Adds the forces of a pass to those of the hinges: the forces that close the gaps of the hinges, and the
-    /// reactions of the hinges to all other forces.
+    /// Adds to the forces of the hinges, in a pass: the forces that close the gaps of the hinges, and the reactions of
+    /// the hinges to all other forces.
     pub fn take_hinge_forces(&mut self, closing: Vec<f64>, v: &mut Vectors) {
         let hinges = &self.problem.hinges;
         if hinges.are_none() {
@@ -230,7 +230,7 @@ impl Passes<'_, '_> {
     }
 
     /// Motion and forces at the end of a converged increment d, from the vectors of its last pass; `is_balanced` tells
-    /// whether their equilibrium is that of U0 + d.
+    /// whether the forces are in equilibrium at U0 + d.
     pub fn finish(
         &mut self,
         d: &[f64],

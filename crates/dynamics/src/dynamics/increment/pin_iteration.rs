@@ -1,6 +1,6 @@
 //! A pass of a static increment with bodies that no support holds: contact forces, correction and rigid motions of the
-//! bodies. A motion that only facets resist is held; a motion that nothing resists has no equilibrium. See
-//! docs/theory/bodies.md, Pins.
+//! bodies. A motion that only the facets of the mesh resist is held; for a motion that nothing resists there is no
+//! equilibrium. See docs/theory/bodies.md, Pins.
 
 use super::contact_forces::ContactForces;
 use super::linear_pass::{Vectors, close_hinges};
@@ -11,8 +11,8 @@ use crate::dynamics::step::{
 use crate::lcp::Stability;
 use crate::linear::{larger, largest};
 
-/// Force, relative to all others, up to which it is ignored if it acts along a motion that nothing resists and that
-/// cannot be held.
+/// Largest force, relative to the largest of the other forces, that is ignored if it acts along a motion that nothing
+/// resists and that cannot be held.
 const SMALL_FORCE: f64 = 1e-9;
 /// Force at the pins of a body that counts as zero, relative to the largest force at all pins.
 const NO_PART: f64 = 1e-12;
@@ -31,7 +31,7 @@ struct Unbalance {
 pub(super) struct PinState {
     /// Number of last passes, in a row, in which a body that touches nothing was not in balance.
     free_passes: usize,
-    /// The unbalance before motions were held.
+    /// The forces that were not balanced before motions were held.
     before: Option<Unbalance>,
     /// Motions that are held.
     pub held: HeldMotions,
@@ -57,7 +57,7 @@ pub(super) struct PinIteration<'a, 'm> {
 
 impl PinIteration<'_, '_> {
     /// Solves a pass: contact forces, correction and rigid motions. A motion that a force drives is held if only the
-    /// facets of the mesh resist the motion. If nothing resists the motion, there is no equilibrium.
+    /// facets of the mesh resist the motion. If nothing resists a motion that a force drives, there is no equilibrium.
     ///
     /// Returns the forces by which hinges close their gaps.
     pub fn iterate(
@@ -112,8 +112,7 @@ impl PinIteration<'_, '_> {
         }
     }
 
-    /// Contact forces and correction of a pass; returns the forces by which hinges close their
-    /// gaps.
+    /// Solves for contact forces and correction of a pass; returns the forces by which hinges close their gaps.
     ///
     /// ```text
     /// dU = d_p + W (r + N dU + B^T P) + Z p      eq. (12.4)
@@ -144,7 +143,7 @@ impl PinIteration<'_, '_> {
         }
     }
 
-    /// Whether a body has tipped over or is about to.
+    /// Whether a body has tipped over or is about to tip over.
     fn tips(&self) -> bool {
         let free = self.workspace.stiffness.k.free();
         free.is_some_and(|free| free.stability() != Stability::Stable)
@@ -173,8 +172,9 @@ impl PinIteration<'_, '_> {
             .fold(0.0, larger)
     }
 
-    /// Motions that a force drives although contact does not resist them, or resists them only as little as facets may.
-    /// A motion that facets resist counts only if its force is one that facets may cause.
+    /// Motions along which a force drives a body although contact resists the motion not at all, or only as little as
+    /// facets may. A motion that facets resist counts only if facets may cause a force as large as the force along the
+    /// motion.
     fn driven(&mut self, contact: &ContactForces, v: &Vectors) -> Vec<Loose> {
         let others = self.others(contact, v);
         let problem = self.problem;
@@ -229,8 +229,8 @@ impl PinIteration<'_, '_> {
         most.is_some_and(|(_, pressed)| pressed > 0.0)
     }
 
-    /// Holds the free motions of bodies with forces at their pins; returns whether there are any. The free motions are
-    /// found in a configuration in which the bodies have not moved away.
+    /// Holds the free motions of bodies with forces at their pins; returns whether there are any such motions. The free
+    /// motions are found in a configuration in which the bodies have not moved away from their contacts.
     fn hold(
         &mut self,
         contact: &mut ContactForces,
@@ -246,8 +246,8 @@ impl PinIteration<'_, '_> {
         Ok(held.hold(&self.workspace.pins, &at, &acting, (force, least)))
     }
 
-    /// Checks that the forces that hold motions in a converged increment are within those that facets may cause under
-    /// the normal forces of the increment.
+    /// Checks that the forces that hold motions in a converged increment are no larger than facets may cause under the
+    /// normal forces of the increment.
     pub fn check_held(
         &self,
         contact: &ContactForces,

@@ -5,7 +5,7 @@ use super::corrections::Corrections;
 use crate::dynamics::results::Cause;
 use crate::model::Factorization;
 
-/// Rate that fresh factors are expected to have until it is measured.
+/// Expected rate of the corrections with fresh factors, until the rate is measured.
 const FRESH_RATE: f64 = 0.03;
 /// Cost of a factorisation, in passes.
 const COST: f64 = 1.0;
@@ -13,7 +13,7 @@ const COST: f64 = 1.0;
 /// Rule for the factors of K* that an attempt uses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum FactorRule {
-    /// The available factors are used as long as they pay.
+    /// The available factors are used as long as this saves time.
     Kept,
     /// New factors are made for every pass.
     EveryPass,
@@ -46,7 +46,7 @@ pub(super) struct Refactorization {
 }
 
 impl Refactorization {
-    /// Factors of an attempt; it begins with new ones if these are due.
+    /// Factors of an attempt, which begins with new factors if these are due.
     pub fn new(rule: FactorRule, are_due: bool, tolerance: f64) -> Self {
         Refactorization {
             rule,
@@ -90,10 +90,11 @@ impl Refactorization {
         (self.own, self.age) = (true, 0);
     }
 
-    /// Enters the relative correction of a pass. A growing correction is not divergence if it `may_grow`.
+    /// Enters the relative correction of a pass. A growing correction is not divergence if `may_grow` is true.
     ///
-    /// At the rate theta, n(theta) = ln(correction/tolerance)/-ln(theta) passes are left. The factors are worn if
-    /// n(theta) is more than the passes with fresh factors plus the cost of the factorisation.
+    /// At the rate theta of the corrections, n(theta) = ln(correction/tolerance)/-ln(theta) further passes are needed.
+    /// The factors are worn if n(theta) is larger than the number of passes with fresh factors plus the cost of the
+    /// factorisation.
     pub fn take_in(&mut self, correction: f64, may_grow: bool) -> Result<(), Cause> {
         self.corrections.take_in(correction, may_grow)?;
         self.age += 1;

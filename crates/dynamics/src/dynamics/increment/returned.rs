@@ -3,10 +3,10 @@
 
 use crate::contact::{Constraint, ConstraintKey};
 
-/// Energy given back after an increment, and the energy that nodes without mass lost before.
+/// Energy given back after an increment, and the energy that nodes without mass lost before the return.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Returned {
-    /// Return of each pair.
+    /// Energy and impulses given back to each pair.
     pub pairs: Vec<PairReturn>,
     /// Work of the supports that keep their velocity during the return (energy).
     pub support_work: f64,
@@ -33,13 +33,13 @@ pub(crate) struct PairReturn {
     pub key: ConstraintKey,
     /// Energy D.
     pub energy: f64,
-    /// Energy that friction had dissipated and that returns with its force.
+    /// Energy that friction had dissipated and that comes back as its force is taken back.
     pub friction: f64,
-    /// Normal impulse (dt²/2) y (force time).
+    /// Normal impulse (dt²/2) y of the return, with its share y (force time).
     pub normal: f64,
     /// Tangential impulse of the return (force time).
     pub tangential: f64,
-    /// Impulse on the slave node (force time).
+    /// Impulse of the return on the slave node (force time).
     pub vector: [f64; 2],
 }
 

@@ -6,7 +6,8 @@ use crate::dynamics::results::State;
 use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
 use crate::vectors::{cross, difference};
 
-/// Relative difference of the displacement increments of two supports up to which they are alike but for round-off.
+/// Relative difference of the displacement increments of two supports up to which they count as alike: the difference
+/// is round-off.
 const ALIKE: f64 = 64.0 * f64::EPSILON;
 
 /// Rigid motion of a body, from sums over its nodes.
@@ -29,9 +30,10 @@ struct RigidMotion {
 /// d = shift + (R - 1) r,  R the rotation by 2 atan(omega dt/2),  omega = H/I
 /// ```
 ///
-/// r is the vector from the centre of mass, which moves by dt v_c, or from the pin. The first pass is linear about the
-/// configuration of the predictor; started from U0, it would stretch a body that turns by the angle phi by phi²/2. The
-/// bodies that cannot move as rigid bodies have the increment that all supports of the model share, or zero.
+/// Here r is the vector from the centre of mass, which moves by dt v_c, or from the pin. The first pass is linear about
+/// the configuration of the predictor; a first pass about U0 would stretch a body that turns by the angle phi by
+/// phi²/2. The bodies that cannot move as rigid bodies have the increment that all supports of the model share, or
+/// zero.
 pub(super) fn rigid_predictor(
     problem: &StepProblem,
     start: &State,
@@ -78,8 +80,8 @@ pub(super) fn rigid_predictor(
     d
 }
 
-/// Displacement increment, along both axes, that all supports of the model share; zero if they move differently.
-/// `prescribed` are the increments of the supports over all dofs.
+/// Displacement increment, along both axes, that all supports of the model share; zero if the supports move
+/// differently. `prescribed` are the increments of the supports over all dofs.
 fn of_all_supports(problem: &StepProblem, u0: &[f64], prescribed: &[f64]) -> [f64; 2] {
     let nodes = problem.model.mesh.node_count();
     [0, 1].map(|axis| {

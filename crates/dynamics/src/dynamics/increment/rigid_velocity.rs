@@ -1,5 +1,5 @@
-//! Velocities of bodies that turn: those of their nodes at the end of an increment, and those from which impulses start
-//! at its start. See docs/theory/bodies.md, Rigid bodies that turn.
+//! Velocities of bodies that turn: the velocities of their nodes at the end of an increment, and the velocities from
+//! which impulses start at the beginning of the increment. See docs/theory/bodies.md, Rigid bodies that turn.
 
 use std::borrow::Cow;
 
@@ -20,15 +20,14 @@ pub(super) fn carry_nodes(
     problem.unknowns.move_bodies(u, v);
 }
 
-/// The velocity V from which impulses of contact start in place of V0 is that of a motion of the
-/// model:
+/// The velocity V from which impulses of contact start in place of V0 is a motion of the model:
 ///
 /// ```text
 /// V = Vr + T_0 (T_0^T M T_0)^-1 T_0^T M (V0 - Vr)      eq. (11.5)
 /// ```
 ///
-/// Vr is any motion of the model with the prescribed values, and T_0 are the rows (11.3) at the start. The difference
-/// V0 - V does no work with impulses, (V0 - V).M V = 0, so impulses add no energy.
+/// Here Vr is any motion of the model with the prescribed values, and T_0 holds the rows (11.3) at the start. The
+/// difference V0 - V does no work with impulses, (V0 - V).M V = 0, so impulses add no energy.
 pub(super) fn agreeing<'a>(
     problem: &StepProblem,
     workspace: &mut Workspace,

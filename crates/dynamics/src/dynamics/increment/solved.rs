@@ -24,10 +24,10 @@ pub(crate) struct Solved {
     pub end: State,
     /// Energy that the materials have dissipated.
     pub material_dissipation: f64,
-    /// Work of the temperature, and the larger of its two parts.
+    /// Work of the temperature, and the larger of the two parts of this work.
     pub thermal_work: [f64; 2],
-    /// Displacement increment after the first pass, by the tangent at the start. If contact alone holds a body, the
-    /// increment is the one after the first pass with closed pairs.
+    /// Displacement increment after the first pass, by the tangent at the start. If contact alone holds a body, this is
+    /// the displacement increment after the first pass with closed pairs.
     pub tangent: Vec<f64>,
     /// Its passes.
     pub passes: Vec<PassReport>,
@@ -37,11 +37,11 @@ pub(crate) struct Solved {
     pub held: HeldMotions,
     /// Whether closed pairs stiffened K*.
     pub pairs_stiffen: bool,
-    /// Rates that a static increment has measured with its factors.
+    /// Rates of the corrections that a static increment has measured with its factors.
     pub rates: StaticRates,
-    /// Whether the last factors of a static increment tell the stability of its end.
+    /// Whether the last factors of a static increment show if the equilibrium at its end is stable.
     pub tells_stability: bool,
-    /// Whether a body has tipped over, which the next increment cannot extrapolate.
+    /// Whether a body has tipped over, so that the next increment must not extrapolate the motion.
     pub has_tipped: bool,
 }
 
@@ -58,7 +58,7 @@ pub(crate) struct Path {
     pub held: HeldMotions,
     /// Whether closed pairs stiffened K*.
     pub pairs_stiffen: bool,
-    /// Rates that static increments have measured with their factors.
+    /// Rates of the corrections that static increments have measured with their factors.
     pub rates: StaticRates,
 }
 

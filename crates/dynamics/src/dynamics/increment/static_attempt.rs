@@ -27,20 +27,21 @@ const PATIENCE: usize = 8;
 const LARGE_PATIENCE: usize = 25;
 /// Number of passes after which slave nodes keep their targets.
 const SEARCHING_PASSES: usize = 3;
-/// Number of passes after which forces of pairs settle.
+/// Number of passes from which on the equal-force rule makes the forces of pairs settle.
 const SETTLED_PASSES: usize = 4;
 
 /// An attempt at one static increment.
 pub(super) struct StaticAttempt<'a, 'm> {
     pub passes: Passes<'a, 'm>,
-    /// The path from which the passes start, in place of the rigid motion of the bodies.
+    /// The path from which the passes start; if `None`, they start from the rigid motion of the bodies.
     pub guess: Option<&'a Path>,
 }
 
 impl<'m> StaticAttempt<'_, 'm> {
-    /// Solves the increment, starting from the motion of the last one, with factors that are kept as long as they pay,
-    /// then with new factors in every pass. If both fail, the increment starts from rest, and then with K* stiffened by
-    /// closed pairs: K alone is soft in bending and leaves the contact forces of slender bodies few digits.
+    /// Solves the increment, starting from the motion of the last increment, with factors that are kept as long as they
+    /// pay, then with new factors in every pass. If both ways fail, the increment starts from rest, and then with K*
+    /// stiffened by closed pairs. K alone is soft in bending and leaves the contact forces of slender bodies few
+    /// digits.
     pub fn solve(mut self) -> Result<Solved, Failed> {
         let settings = &self.passes.problem.settings;
         let mut trace = Trace::new(settings.max_passes);
@@ -80,7 +81,8 @@ impl<'m> StaticAttempt<'_, 'm> {
         Err(trace.failed(failed, settings.tolerance))
     }
 
-    /// Attempts in their order: whether closed pairs stiffen K*, and the rule for the factors of the passes.
+    /// Attempts in their order; each states whether closed pairs stiffen K*, and the rule for the factors of the
+    /// passes.
     fn orders(&self) -> &'static [(bool, FactorRule)] {
         use FactorRule::{EveryPass, Kept};
         let may_keep = self.passes.problem.settings.factorization == Factorization::Keep;
@@ -99,7 +101,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// Solves with passes in which closed pairs stiffen K* or not, and factors may be kept.
+    /// Solves the increment with the given choice of whether closed pairs stiffen K* and whether factors are kept.
     fn solve_with(
         &mut self,
         pairs_stiffen: bool,
@@ -226,7 +228,7 @@ impl<'m> StaticAttempt<'_, 'm> {
         }
     }
 
-    /// Whether the available factors belong to a K* of the kind that the next pass needs.
+    /// Whether the available factors belong to the kind of K* that the next pass needs.
     fn fits(&self, pairs_stiffen: bool) -> bool {
         let stiffness = &self.passes.workspace.stiffness;
         let is_tangent = stiffness.form == StiffnessForm::Tangent && !pairs_stiffen;

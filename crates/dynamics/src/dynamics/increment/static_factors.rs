@@ -1,4 +1,4 @@
-//! Decides when K is factorised anew in static increments, by the measured rates of kept factors and of new ones. See
+//! Decides when K is factorised anew in static increments, by the measured rates of kept and of new factors. See
 //! docs/numerics.md, Kept factors of static steps.
 
 use serde::{Deserialize, Serialize};
@@ -6,24 +6,25 @@ use serde::{Deserialize, Serialize};
 use super::refactorization::FactorRule;
 use crate::dynamics::results::Cause;
 
-/// Rate of the corrections from which on kept factors never pay.
+/// Rate of the corrections from which on kept factors never save time.
 const POOR: f64 = 0.3;
-/// Rate that kept factors are expected to have until it is measured.
+/// Expected rate of the corrections with kept factors, until the rate is measured.
 const EXPECTED: f64 = 0.03;
 /// Rate of the first pass with new factors up to which kept factors are tried again.
 const SMOOTH: f64 = 0.01;
-/// Least rate that new factors are expected to have.
+/// Least expected rate of the corrections with new factors.
 const LEAST: f64 = 1e-4;
 /// Cost of a factorisation, in passes.
 const COST: f64 = 2.0;
-/// Error of an iterate, relative to the increment, up to which the factors there tell the stability of the equilibrium.
+/// Error of an iterate, relative to the increment, up to which the factors at this iterate show if the equilibrium is
+/// stable.
 const NEAR: f64 = 1e-3;
-/// Rates that the increments of a static step have measured.
+/// Rates of the corrections that the increments of a static step have measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StaticRates {
-    /// Rate, within an increment, of the factors with which it began.
+    /// Rate of the corrections, within an increment, with the factors with which the increment began.
     kept: f64,
-    /// Rate of new factors divided by the error of the iterate at which they are made.
+    /// Rate of the corrections with new factors, divided by the error of the iterate at which these factors are made.
     growth: f64,
     /// Relative correction of the first pass.
     first: f64,
@@ -53,19 +54,19 @@ pub(super) struct StaticFactors {
     age: usize,
     /// Error of the iterate at which the factors were made, relative to the increment.
     made_at: f64,
-    /// Expected rate of the factors.
+    /// Expected rate of the corrections with the factors.
     rate: f64,
     /// Correction of the last pass.
     last: Option<f64>,
-    /// Whether the last correction was smaller than the one before. If the correction was not smaller, contact still
-    /// searches for its states.
+    /// Whether the last correction was smaller than the correction before it. If the correction was not smaller, the
+    /// contact states are still changing.
     falls: bool,
-    /// Whether a pass has used the factors of an earlier one.
+    /// Whether a pass has used the factors of an earlier pass.
     have_been_kept: bool,
 }
 
 impl StaticFactors {
-    /// The factors of an attempt, which may begin with available ones.
+    /// The factors of an attempt, which may begin with available factors.
     pub fn new(rates: StaticRates, rule: FactorRule, tolerance: f64) -> Self {
         StaticFactors {
             rates,
@@ -95,8 +96,8 @@ impl StaticFactors {
     /// n(theta) + s > COST + n(growth e) + s_new
     /// ```
     ///
-    /// Here e is the error of the iterate at which factors would be made. The cost s of telling the stability at the
-    /// end is zero if the factors belong to an iterate near the end, else that of another factorisation.
+    /// Here e is the error of the iterate at which factors would be made. The cost s of finding whether the end is
+    /// stable is zero if the factors belong to an iterate near the end, else it is the cost of another factorisation.
     pub fn are_worn(&self) -> bool {
         if !self.may_be_kept || !self.falls || self.rate >= POOR {
             return true;
@@ -108,7 +109,7 @@ impl StaticFactors {
         left(self.rate) + of_stability(self.made_at) > COST + left(new) + of_stability(error)
     }
 
-    /// Begins a pass whose factors are new, or those of the last pass.
+    /// Begins a pass with new factors or with the factors of the last pass.
     pub fn begin(&mut self, is_new: bool) {
         self.are_own = [self.are_own[1], self.are_own[1] || is_new];
         if is_new {
@@ -122,7 +123,7 @@ impl StaticFactors {
     ///
     /// # Errors
     /// Returns an error if the first pass used earlier factors and hardly decreased the correction,
-    /// so it has led away from the solution.
+    /// so the pass has led away from the solution.
     pub fn take_in(&mut self, correction: f64) -> Result<(), Cause> {
         self.age += 1;
         let of_last = self.are_own[0];
@@ -167,17 +168,17 @@ impl StaticFactors {
         }
     }
 
-    /// Whether a pass has used the factors of an earlier one.
+    /// Whether a pass has used the factors of an earlier pass.
     pub fn have_been_kept(&self) -> bool {
         self.have_been_kept
     }
 
-    /// Whether the factors tell the stability of the equilibrium.
+    /// Whether the factors show if the equilibrium is stable.
     pub fn are_near(&self) -> bool {
         self.made_at <= NEAR
     }
 
-    /// Rates that the attempt has measured.
+    /// Rates of the corrections that the attempt has measured.
     pub fn rates(&self) -> StaticRates {
         self.rates
     }
@@ -190,8 +191,8 @@ mod tests {
     const TOLERANCE: f64 = 1e-11;
 
     /// Number of passes and of factorisations of an increment. The error of the iterates falls by `growth` times the
-    /// error at which the factors were made. The first error is `first`, and the factors of the last increment have the
-    /// rate `kept`.
+    /// error at which the factors were made. The first error is `first`; with the factors of the last increment, the
+    /// error falls at the rate `kept`.
     fn solve(rates: &mut StaticRates, growth: f64, [first, kept]: [f64; 2]) -> [usize; 2] {
         let mut factors = StaticFactors::new(*rates, FactorRule::Kept, TOLERANCE);
         let (mut error, mut rate, mut count) = (first, kept, [0; 2]);

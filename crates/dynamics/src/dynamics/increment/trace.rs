@@ -1,7 +1,7 @@
 //! Progress of an attempt at an increment, which remains when the attempt fails.
 //!
-//! Slave nodes whose contact goes to and fro from pass to pass; these keep the passes from converging if contact forces
-//! do not come to rest.
+//! Slave nodes whose contact goes to and fro from pass to pass; such nodes keep the passes from converging if contact
+//! forces do not come to rest.
 
 use std::collections::VecDeque;
 
@@ -13,8 +13,8 @@ use crate::model::Settings;
 
 /// Number of corrections at the end of an attempt over which their mean rate is computed.
 const LAST: usize = 4;
-/// Growth from which on passes count as diverged: of the corrections from their smallest to the last, or of the forces
-/// to be balanced from the first to the last.
+/// Growth from which on passes count as diverged: growth of the corrections from the smallest to the last, or of the
+/// forces to be balanced from the first pass to the last.
 const GROWTH: f64 = 10.0;
 /// Number of passes for which memory is reserved at the start.
 const ROOM: usize = 100;
@@ -29,7 +29,7 @@ pub(crate) struct Failed {
     pub passes: Vec<PassReport>,
 }
 
-/// Records of an attempt, which remain even if it fails.
+/// Records of an attempt, which remain even if the attempt fails.
 #[derive(Default)]
 pub(super) struct Trace {
     pub passes: Vec<PassReport>,
@@ -75,7 +75,7 @@ impl Trace {
             .map_or(f64::INFINITY, |pass| pass.correction)
     }
 
-    /// Whether the passes since the last start will converge within MAX PASSES at the rate of the last ones.
+    /// Whether the passes since the last start will converge within MAX PASSES at the rate of the last passes.
     pub fn will_end(&self, settings: &Settings) -> bool {
         let corrections = self.corrections();
         match end_of(&corrections, settings.tolerance) {
@@ -112,7 +112,7 @@ impl Trace {
         }
     }
 
-    /// Course of the passes; `None` if they were too few to show one.
+    /// Course of the passes; `None` if there were too few passes to judge.
     fn course(&self, tolerance: f64) -> Option<Course> {
         let alternations = self.contact.alternations();
         let corrections = self.corrections();
@@ -142,14 +142,14 @@ impl Trace {
     }
 }
 
-/// Number, from 1, of the pass after which the corrections grew, if they did.
+/// Number, from 1, of the pass after which the corrections grew; `None` if they did not grow.
 fn growth(corrections: &[f64]) -> Option<usize> {
     let (smallest, least) = (corrections.iter().enumerate()).min_by(|p, q| p.1.total_cmp(q.1))?;
     let last = *corrections.last()?;
     (last > GROWTH * least).then_some(smallest + 1)
 }
 
-/// Course of the last corrections, with n = ln(correction/tolerance)/-ln(rate) passes left.
+/// Course of the last corrections, with n = ln(correction/tolerance)/-ln(rate) further passes needed.
 fn end_of(corrections: &[f64], tolerance: f64) -> Option<Course> {
     let ends = &corrections[corrections.len().saturating_sub(LAST)..];
     let (&first, &last) = (ends.first()?, ends.last()?);
@@ -170,7 +170,7 @@ fn end_of(corrections: &[f64], tolerance: f64) -> Option<Course> {
 
 /// Number of last passes within which a slave node must have left a state and come back to it.
 const PASSES: usize = 6;
-/// Number of the very last passes within which the state of a slave node must have changed.
+/// Number of last passes within which the state of a slave node must have changed.
 const RECENT: usize = 3;
 
 /// A closed pair after a pass.
@@ -221,7 +221,7 @@ impl PassContacts {
         self.make_room();
     }
 
-    /// Reserves memory for as many pairs in all passes as the last one has.
+    /// Reserves memory for as many pairs in all passes as the last pass has.
     fn make_room(&mut self) {
         let of_pass = self.counts.back().copied().unwrap_or(0);
         let passes = PASSES - self.counts.len();
@@ -251,7 +251,7 @@ impl PassContacts {
             .collect()
     }
 
-    /// The two states between which a slave node went to and fro, if it did.
+    /// The two states between which a slave node went to and fro; `None` if it did not.
     fn of_slave(&self, slave: SlaveKey) -> Option<Alternation> {
         let own = |touches: &[Touch]| -> Vec<Touch> {
             let is_own = |touch: &&Touch| touch.pair.key.slave() == slave;
@@ -270,7 +270,7 @@ impl PassContacts {
     }
 }
 
-/// The difference between two states of a slave node; `None` if there is none.
+/// The difference between two states of a slave node; `None` if the states are equal.
 fn alternation(p: &[Touch], q: &[Touch]) -> Option<Alternation> {
     let without = |p: &[Touch], q: &[Touch]| {
         let is_other = |touch: &&Touch| q.iter().all(|other| other.pair.nodes != touch.pair.nodes);
@@ -294,7 +294,7 @@ fn alternation(p: &[Touch], q: &[Touch]) -> Option<Alternation> {
 mod tests {
     use super::*;
 
-    /// The failure of passes with the given corrections, after other passes.
+    /// The failure of an attempt whose last passes have the given corrections, after other passes.
     fn failed(cause: Cause, corrections: &[f64]) -> Failed {
         let mut trace = Trace::default();
         let pass = |correction| PassReport {

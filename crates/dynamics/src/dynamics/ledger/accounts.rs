@@ -1,6 +1,5 @@
-//! Results of a converged increment other than energies: momentum, motion of the bodies, resultants
-//! of the contacts, nodal quantities and reactions of rigid surfaces. See docs/theory/impacts.md,
-//! Ledger.
+//! Results of a converged increment that are not energies: momentum, motion of the bodies, resultants of the contacts,
+//! nodal quantities and reactions of rigid surfaces. See docs/theory/impacts.md, Ledger.
 
 use super::bodies::{BodyMasses, Moving, momentum, rigid_reactions};
 use super::contact_ledger::ContactLedger;
@@ -20,7 +19,7 @@ use crate::dynamics::step::{Discretization, Interval, Mass, SlaveFaces, StepProb
 use crate::model::Contact;
 use crate::prepare::Redistribution;
 
-/// Accounts of a run other than the energy ledger: bodies and contacts.
+/// Accounts of a run in addition to the energy ledger: bodies and contacts.
 pub(crate) struct Accounts {
     bodies: BodyMasses,
     faces: SlaveFaces,

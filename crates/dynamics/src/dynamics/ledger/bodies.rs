@@ -11,7 +11,7 @@ use crate::vectors::dot;
 /// Masses of the bodies of a model, constant over a run.
 pub(crate) struct BodyMasses {
     pub bodies: Bodies,
-    /// Turning bodies with elements: number of the body, centre of mass and moment of inertia about it.
+    /// Turning bodies with elements: number of the body, centre of mass and moment of inertia about the centre of mass.
     turning: Vec<(usize, usize, f64)>,
     /// Mass of every body.
     mass: Vec<f64>,
@@ -19,7 +19,7 @@ pub(crate) struct BodyMasses {
     share: Vec<f64>,
 }
 
-/// Displacement and velocity, the momentum p = M V of the nodes, and the results of the elements.
+/// Displacement and velocity of the nodes, their momentum p = M V, and the results of the elements.
 pub(crate) struct Moving<'a> {
     pub u: &'a [f64],
     pub v: &'a [f64],
@@ -59,8 +59,7 @@ impl BodyMasses {
     /// H = sum_a r_a x p_a,  I = sum_ab r_a.M_ab r_b,  omega = H / I     eq. (9.7)
     /// ```
     ///
-    /// Here p = M v with the consistent mass, m_a are the row sums of M, and positions are those of
-    /// the current configuration.
+    /// Here p = M v with the consistent mass, m_a are the row sums of M, and positions are current positions.
     pub fn results(&self, problem: &StepProblem, moving: &Moving) -> Vec<BodyResult> {
         let Moving { u, v, p, elements } = *moving;
         let centers = self.centers(problem, u);
@@ -163,7 +162,7 @@ impl BodyMasses {
     }
 }
 
-/// Length by which the rotation dof of a turning body is divided to give the body's angle.
+/// Length by which the rotation dof of a turning body must be divided to give the body's angle.
 fn own_length(problem: &StepProblem, spin: usize) -> f64 {
     let mut bodies = problem.unknowns.turning.bodies.iter();
     bodies
@@ -197,8 +196,8 @@ pub(crate) fn momentum(problem: &StepProblem, u: &[f64], p: &[f64]) -> Momentum 
     momentum
 }
 
-/// The motion of the rigid bodies, and the forces `reaction` at their reference nodes and angles, which include those
-/// handed over from their nodes, eq. (9.9).
+/// The motion of the rigid bodies, and the forces `reaction` at their reference nodes and angles, which include the
+/// forces that nodes hand over to them, eq. (9.9).
 pub(crate) fn rigid_reactions(
     problem: &StepProblem,
     state: &State,

@@ -134,8 +134,8 @@ impl ContactLedger {
         sums.map(|sums| (sums.friction_dissipation, sums.sliding))
     }
 
-    /// Enters the returns after an increment, before the increment itself; returns the total impulses of the pairs with
-    /// returns.
+    /// Enters the landing and release returns of an increment; the increment itself must be entered later. Returns the
+    /// total impulses of the pairs with returns.
     pub fn enter_returns(
         &mut self,
         model: &Model,
@@ -183,7 +183,7 @@ impl ContactLedger {
     }
 
     /// Distance of the total impulses from Coulomb's cone, for each contact. Without returns the total impulses are in
-    /// the cone, since the impulses of forces and those of impacts are each in it.
+    /// the cone, since both the impulses of forces and the impulses of impacts are in it.
     fn measure_cones(totals: &Totals, resultants: &mut [ContactResultant]) {
         let mut largest = vec![0.0_f64; resultants.len()];
         for (key, (constraint, [normal, tangential, size])) in totals {
@@ -201,7 +201,7 @@ impl ContactLedger {
     }
 
     /// Adds |Bt d| of the closed pairs to the slip of their slave nodes, and its mean to the slip of master nodes, eq.
-    /// (9.16). If a node has several pairs, the largest slip is added.
+    /// (9.16). If a node has several pairs, the largest of their slips is added.
     fn slide(&mut self, solved: &Solved) {
         let mut increments = vec![0.0_f64; self.slip.len()];
         let mut of_masters = MasterMeans::new(self.slip.len());
@@ -218,8 +218,8 @@ impl ContactLedger {
     }
 }
 
-/// The result is 1 if the slave surface of a constraint is the side whose forces are reported, -1 if it is the other
-/// side, 0 within one body.
+/// The sign 1 if the slave surface of a constraint is the side whose forces are reported, -1 if it is the other side,
+/// and 0 within one body.
 fn side_of_slave(model: &Model, bodies: &Bodies, constraint: &Constraint) -> f64 {
     let on_side = forces_on_side(model, bodies, constraint, [1.0, 0.0]);
     let slave = constraint.forces_on_slave_surface([1.0, 0.0]).next();
@@ -230,8 +230,8 @@ fn side_of_slave(model: &Model, bodies: &Bodies, constraint: &Constraint) -> f64
     }
 }
 
-/// Normal and tangential impulses of pairs in an increment, and the sum of the absolute normal impulses: if all of a
-/// force is taken back, the total is only the round-off of its parts.
+/// Normal and tangential impulses of pairs in an increment, and the sum of the absolute normal impulses. If all of a
+/// force is taken back, the total normal impulse is only the round-off of its parts.
 type Totals<'s> = BTreeMap<ConstraintKey, (&'s Constraint, [f64; 3])>;
 
 /// Total impulses of every pair: dt P + (Phi, Psi) plus the return.
@@ -265,8 +265,8 @@ fn add_impulse([normal, tangential, size]: &mut [f64; 3], impulse: [f64; 2]) {
 }
 
 impl ContactImpulse {
-    /// Adds the normal and tangential impulse of a constraint; `on_side` are its impulses at the nodes of the reported
-    /// side.
+    /// Adds the normal and tangential impulse of a constraint; `on_side` gives the impulses of the constraint at the
+    /// nodes of the reported side.
     fn add(
         &mut self,
         [normal, tangential]: [f64; 2],
@@ -280,8 +280,8 @@ impl ContactImpulse {
         self.tangential += tangential;
     }
 
-    /// Adds the impulse of a landing return; its slave node is on the reported side (1), on the other side (-1) or on
-    /// both (0).
+    /// Adds the impulse of a landing return; the slave node is on the reported side (1), on the other side (-1) or on
+    /// both sides (0).
     fn add_return(&mut self, returned: &PairReturn, side: f64) {
         self.vector[0] += side * returned.vector[0];
         self.vector[1] += side * returned.vector[1];
@@ -323,8 +323,8 @@ fn add_to_bodies(
     }
 }
 
-/// The largest violations of the contact law at the end of an increment that began at `start`; candidate lists are
-/// those of the end.
+/// The largest violations of the contact law at the end of an increment that began at `start`; the candidate lists must
+/// be valid at the end.
 pub(crate) fn contact_violation(
     problem: &StepProblem,
     search: &Search,

@@ -15,8 +15,8 @@ use crate::dynamics::step::{Equilibrium, ROUND_OFF, StepProblem, Workspace, diff
 use crate::elements::{ElementResult, TangentPart};
 use crate::linear::{larger, largest};
 
-/// Normal work of contact in an increment up to which it is round-off, relative to the largest energy so far: forces
-/// and displacements are converged to 1e-11 (`TOLERANCE`), and the errors of pairs add up.
+/// Normal work of contact in an increment up to which this work is round-off, relative to the largest energy so far.
+/// Forces and displacements are converged to 1e-11 (`TOLERANCE`), and the errors of pairs add up.
 pub(super) const CONTACT_WORK_ROUND_OFF: f64 = 1e-10;
 
 /// Energy stored by elements, whose results are given, and by springs in a state (force length).
@@ -41,15 +41,15 @@ pub(crate) struct Ledger {
     pub works: Vec<PairWork>,
     /// Forces at the end of the last increment, in a static or quasi-static step.
     pub end: Option<EndForces>,
-    /// T + W at the start of the analysis.
+    /// Kinetic plus strain energy, T + W, at the start of the analysis.
     start: f64,
     /// Work of the loads and work of the supports in static steps.
     sources: [f64; 2],
-    /// Largest K_ii of an element or spring in every part at the start (force/length).
+    /// Largest diagonal entry K_ii of an element or spring in every part at the start (force/length).
     stiffness: Vec<f64>,
 }
 
-/// Largest K_ii of an element or spring in every part of the model.
+/// Largest diagonal entry K_ii of an element or spring in every part of the model.
 fn stiffness_of_elements(problem: &StepProblem, start: &State) -> Vec<f64> {
     let StepProblem {
         elements, parts, ..
@@ -124,8 +124,8 @@ impl Ledger {
     }
 
     /// Changes the ledger to a step of another procedure at a state with the velocities of the new step. Kinetic energy
-    /// that bodies lose as they come to rest is numerical dissipation; energy that supports give as they begin to move
-    /// is their work.
+    /// that bodies lose as they come to rest counts as numerical dissipation; energy that supports give as they begin
+    /// to move counts as work of the supports.
     pub fn change_procedure(&mut self, problem: &StepProblem, state: &State) {
         problem.mass.write_product(&state.v, &mut self.momentum);
         let kinetic = dot(&state.v, &self.momentum) / 2.0;
@@ -188,8 +188,8 @@ impl Ledger {
         Ok(self)
     }
 
-    /// Enters the impulses at the start of an increment: the energy that they remove, and the work of supports, which
-    /// keep their velocity.
+    /// Enters the impulses at the start of an increment: the energy that the impulses remove, and the work of supports,
+    /// which keep their velocity.
     fn enter_impulses(&mut self, problem: &StepProblem, start: &State, solved: &Solved) {
         if solved.v0p == start.v {
             return;
@@ -298,8 +298,8 @@ impl Ledger {
     }
 
     /// Enters the work of a static increment that began at `start` with the strain energy `strain0`. Between two
-    /// equilibria, loads, internal force and normal contact forces act with the mean of their two values, eq. (12.7)
-    /// and eq. (12.8).
+    /// equilibria, loads, internal force and normal contact forces act with the mean of their values at start and end,
+    /// eq. (12.7) and eq. (12.8).
     fn enter_equilibrium(
         &mut self,
         problem: &StepProblem,
@@ -359,7 +359,7 @@ impl Ledger {
     }
 
     /// Bound of the work that the round-off of forces may do in a static increment. No pass can balance the round-off
-    /// of forces; forces of elements without unknowns count too.
+    /// of forces. The bound includes the forces of elements without unknowns.
     ///
     /// ```text
     /// max n |d|,   n >= 4 eps K_ii |U|      eq. (9.17)
@@ -375,7 +375,7 @@ impl Ledger {
     }
 
     /// Completes an increment that ends in the state `end`: computes the balance and the largest energy. Returns the
-    /// work of the normal contact forces since `contact_work0` if it is positive beyond round-off.
+    /// work that the normal contact forces have done since `contact_work0`, if this work is positive beyond round-off.
     ///
     /// # Errors
     /// Returns an error if an energy is not finite.
@@ -394,7 +394,7 @@ impl Ledger {
     /// Checks that all energies are finite.
     ///
     /// # Errors
-    /// Returns [`Cause::NotFinite`] with the node that moves most, or is the fastest, in `state`.
+    /// If not, returns [`Cause::NotFinite`] with the node that moves most, or is the fastest, in `state`.
     pub fn check(&self, state: &State) -> Result<(), Cause> {
         let e = &self.energy;
         let energies = [

@@ -10,7 +10,7 @@ use crate::dynamics::results::{Cause, Energy, State};
 use crate::dynamics::step::{StepProblem, Workspace};
 use crate::linear::larger;
 
-/// Energy balance, relative to the largest energy, beyond which the results of a run mean nothing and the run stops.
+/// Energy balance, relative to the largest energy, above which the results of a run are useless and the run stops.
 const UNBALANCED: f64 = 1e-3;
 
 /// Checks that contact adds no energy in a converged increment from `start` that is significant
@@ -42,14 +42,15 @@ pub(crate) fn check_energy_gain(
 /// Checks that the energy balance is negligible against the largest energy so far.
 ///
 /// Round-off of positions causes forces n that cannot be balanced. No balance is demanded of a motion with so little
-/// energy that the forces n exceed a thousandth of its own forces:
+/// energy that the round-off forces n exceed a thousandth of the forces of the motion:
 ///
 /// ```text
 /// |balance| <= 1e-3 E,   or   E <= max n²/(1e-3² (K_ii + (2/dt²) M_ii))      eq. (9.13)
 /// ```
 ///
-/// Here E is the largest energy so far; n, K_ii and M_ii are those of eq. (4.10). In a static step no balance is
-/// demanded either if n has done more than a thousandth of E of work, since the bodies then move rigidly.
+/// Here E is the largest energy so far; the symbols n, K_ii and M_ii have the meaning of eq. (4.10). In a static step
+/// no balance is demanded if the work of the forces n exceeds a thousandth of E, since the bodies then move almost as
+/// rigid bodies.
 ///
 /// # Errors
 /// [`Cause::Unbalanced`].
@@ -88,12 +89,13 @@ pub(crate) fn check_balance(
     })
 }
 
-/// Energy that contact adds because nodes slide on to segments behind which they were: the sum over the pairs, each
-/// relative to the largest energy of its bodies.
+/// Energy that contact adds because nodes slide on to segments behind which they were: the sum over the pairs, where
+/// the work of a pair is relative to the largest energy of its bodies.
 ///
-/// With energy-momentum rows a pair does the work Pn (g1 - g0). The work Pn (g1 - g0) is positive if a node slides over
-/// a convex corner on to a segment with g0 < 0, and the segment stops the node because the corner turns concave in the
-/// same increment. Nodes that the mesh places inside a body do not count.
+/// With energy-momentum rows a pair does the work Pn (g1 - g0), for gaps g0 at the start and g1 at the end. The work Pn
+/// (g1 - g0) of a pair is positive if its node slides over a convex corner on to a segment with the gap g0 < 0 at the
+/// start, and the segment stops the node because the corner turns concave in the same increment. Nodes that the mesh
+/// places inside a body do not count.
 fn gain(problem: &StepProblem, start: &State, ledger: &Ledger, solved: &Solved) -> f64 {
     if !problem.integration.energy_momentum {
         return 0.0;

@@ -25,8 +25,8 @@ use crate::vectors::{cross, length};
 /// is an impact.
 const STRUCK: f64 = 1e-9;
 
-/// Reactions, contact forces, gaps and status at the nodes; here reactions of rigid surfaces are still at their own
-/// nodes.
+/// Reactions, contact forces, gaps and status at the nodes; reactions of rigid surfaces are at the nodes of the
+/// surfaces, not at their reference nodes.
 pub(crate) fn nodal_results(problem: &StepProblem, solved: &Solved) -> NodalResults {
     let dofs = solved.d.len();
     let contact_force = solved.contact.forces.resultant(dofs);
@@ -126,8 +126,8 @@ impl MasterMeans {
     }
 }
 
-/// Mean coefficient of friction, weighted by Pn: the first coefficient, and the sums of Pn and of Pn times the
-/// differences from the first.
+/// Mean coefficient of friction, weighted by Pn, from three numbers: the first coefficient, the sum of Pn, and the sum
+/// of Pn times the difference from the first coefficient.
 #[derive(Clone, Copy, Default)]
 struct MeanCoefficient {
     first: f64,
@@ -214,7 +214,7 @@ fn end_gap(problem: &StepProblem, solved: &Solved, constraint: &Constraint) -> f
     constraint.gap_and_scale(&at).0
 }
 
-/// A single configuration as start and end; its rows are the gradients of gap and slip.
+/// A single configuration as start and end; constraints in it have the gradients of gap and slip as rows.
 fn end_rows_at<'a>(problem: &'a StepProblem, u: &'a [f64]) -> Configurations<'a> {
     Configurations {
         form: RowForm::End,
@@ -222,8 +222,8 @@ fn end_rows_at<'a>(problem: &'a StepProblem, u: &'a [f64]) -> Configurations<'a>
     }
 }
 
-/// Forces of a constraint on the slave surface of its contact. If the surface touches itself, it is not a side of the
-/// contact: the forces are then those on the body with the smaller number, and zero within one body.
+/// Forces of a constraint on the slave surface of its contact. If the surface touches itself, the forces are the forces
+/// on the body with the smaller number, and zero within one body.
 pub(super) fn forces_on_side(
     model: &Model,
     bodies: &Bodies,
@@ -294,9 +294,8 @@ pub(crate) fn contact_resultants(
     resultants
 }
 
-/// Landings of pairs that were open before and carry a force now, or were struck at the start. Time
-/// and place come from the second-order motion of the start (paper eq. 50) with the exact crossing
-/// condition.
+/// Landings of pairs that were open before and carry a force at the end, or had an impulse at the start. Time and place
+/// come from the second-order motion of the start (paper eq. 50) with the exact crossing condition.
 pub(crate) fn landings(
     problem: &StepProblem,
     start: &State,
@@ -382,8 +381,8 @@ pub(crate) fn node_path(
     }
 }
 
-/// First time in [0, dt] at which the node reaches the segment, or else its line, from outside; 0
-/// if it is inside at the start, dt if it stays outside.
+/// First time in [0, dt] at which the node reaches the segment, or else the line of the segment, from outside; 0 if the
+/// node is inside at the start, dt if it stays outside.
 fn impact_time(motions: &[QuadraticMotion; 3], dt: f64) -> f64 {
     let [s, a, b] = motions.map(|m| m.position);
     if project(s, a, b).gap <= 0.0 {
@@ -399,15 +398,15 @@ fn impact_time(motions: &[QuadraticMotion; 3], dt: f64) -> f64 {
 }
 
 /// Contact pressure |N|/A of every node, `N` entries (force/length^2), in the configuration of displacements `u`. The
-/// pressure is NaN at nodes without area, and at all nodes except those of slave surfaces and of masters with contact
+/// pressure is NaN at nodes without area, and at all nodes except nodes of slave surfaces and of masters in contact
 /// from surface to surface.
 ///
 /// ```text
 /// N = sum Bn^T Pn,  p = |N|/A    eq. (9.8)
 /// ```
 ///
-/// N is summed over all pairs of the node. `largest`, the largest |N| of the run so far, is updated; forces below the
-/// tolerance of the passes times `largest` count as zero.
+/// The normal force N is summed over all pairs of the node. `largest`, the largest |N| of the run so far, is updated;
+/// forces below the tolerance of the passes times `largest` count as zero.
 pub(crate) fn contact_pressure(
     faces: &SlaveFaces,
     problem: &StepProblem,

@@ -25,7 +25,7 @@ pub(crate) struct PairWork {
     pub surfaces: [SurfaceParts; 2],
 }
 
-/// Work of the pairs in an increment whose forces are constant over it:
+/// Work of the pairs in an increment over which their forces are constant:
 ///
 /// ```text
 /// Pn.(Bn d) - Pn (a0 - a1), eq. (9.2), Pn (a0 - a1), eq. (9.14), and -Pt.(Bt d), eq. (9.3)
@@ -91,7 +91,7 @@ pub(super) fn fit_impulse_work(solved: &Solved, dt: f64) -> f64 {
         .sum()
 }
 
-/// Forces in an equilibrium, with which the work of the next static increment begins.
+/// Forces in an equilibrium from which the work of the next static increment is computed.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct EndForces {
     /// Load and internal force over all dofs (force).
@@ -115,8 +115,8 @@ impl EndForces {
         }
     }
 
-    /// Forces at a state that is no result of a static increment: the forces that balance the internal force count as
-    /// load.
+    /// Forces at a state that does not come from a static increment: the forces that balance the internal force count
+    /// as load.
     pub fn at(problem: &StepProblem, state: &State) -> Result<Self, Cause> {
         let motion = state.motion();
         let internal = problem.elements.internal_force(motion)?;
@@ -128,7 +128,7 @@ impl EndForces {
         })
     }
 
-    /// F - R - B^T P over all dofs: the force of supports and equations (force).
+    /// Force F - R - B^T P of supports and equations, over all dofs (force).
     pub fn missing(&self, dofs: usize) -> Vec<f64> {
         let mut missing = difference(&self.internal, &self.load);
         let contact = self.contact(dofs);
@@ -136,8 +136,8 @@ impl EndForces {
         missing
     }
 
-    /// Forces of supports, including those that equations and bodies that turn hand on to them, (dof, force). The
-    /// forces hold at displacements `u`: the end of an increment `d`, or its start.
+    /// Forces of supports (dof, force), including forces that equations and turning bodies hand on to supports. The
+    /// forces belong to the displacements `u`, at the end of an increment `d` or at its start.
     pub fn of_supports(&self, problem: &StepProblem, [u, d]: [&[f64]; 2]) -> Vec<(usize, f64)> {
         let unknowns = &problem.unknowns;
         let mut missing = unknowns.passed_on(&self.missing(d.len())).into_owned();
@@ -154,8 +154,8 @@ impl EndForces {
         force
     }
 
-    /// Turns the forces of removed contacts, and of supports that the next step does not have, into loads; returns them
-    /// (dof, force), eq. (12.9).
+    /// Turns the forces of removed contacts, and of supports that the next step does not have, into loads; returns
+    /// these loads (dof, force), eq. (12.9).
     pub fn release(
         &mut self,
         removed: &[usize],
@@ -188,17 +188,17 @@ impl EndForces {
         sums
     }
 
-    /// Work of the pairs in a static increment that leads from the equilibrium with these forces to its end, and the
-    /// part of the trapezoidal work of tangential forces that friction does not dissipate:
+    /// Work of the pairs in a static increment that starts from the equilibrium `self`, and the part of the trapezoidal
+    /// work of tangential forces that friction does not dissipate:
     ///
     /// ```text
     /// (Pn0.(Bn0 d) + Pn1.(Bn1 d))/2
     /// -(1 + Pn*/Pn1)/2 Pt1.(Bt1 d),   max(0, -Pt0.(Bt0 d)/2) where Pn1 = 0              eq. (12.8)
     /// ```
     ///
-    /// Pn* = Pn0 + tau (Pn1 - Pn0) is the normal force at which the pair begins to slide, with tau = (1 -+ Pt0/(mu
-    /// Pn0))/2. From the slide on |Pt| = mu Pn, and Pn is linear, so the pair slides with the mean force. A pair that
-    /// opens has only the force of its start.
+    /// Here Pn* = Pn0 + tau (Pn1 - Pn0) is the normal force at which the pair begins to slide, with tau = (1 -+ Pt0/(mu
+    /// Pn0))/2. While the pair slides, |Pt| = mu Pn changes linearly, so the pair slides with the mean of its forces. A
+    /// pair that opens has a force only at the start.
     pub fn works(&self, solved: &Solved, end: &EndForces) -> (Vec<PairWork>, f64) {
         let d = &solved.d;
         let (before, after) = (self.of_slaves(), end.of_slaves());
@@ -258,7 +258,7 @@ impl EndForces {
         (works, tangential + friction)
     }
 
-    /// Work, along the path d, of a force that changes linearly between its two values.
+    /// Work, along the path d, of a force that changes linearly from its value at the start to its value at the end.
     pub fn trapezoid(d: &[f64], [from, to]: [&[f64]; 2]) -> f64 {
         (dot(d, from) + dot(d, to)) / 2.0
     }

@@ -14,7 +14,7 @@ use crate::model::{Contact, Model};
 /// Sums over the run, if the deck asks for wear or heat.
 pub(crate) struct SurfaceWork {
     fields: FrictionResults,
-    /// Sums over the run of all that was added to the nodes (work, volume of wear, heat), and the sums of its absolute
+    /// Sums over the run of all that was added to the nodes (work, volume of wear, heat), and the sums of the absolute
     /// values.
     added: [Sums; 2],
     /// For each contact the wear and heat of its surfaces, if any.
@@ -24,22 +24,22 @@ pub(crate) struct SurfaceWork {
 /// Work of friction (energy), volume of wear (length^3) and heat (energy).
 type Sums = [f64; 3];
 
-/// Wear and heat of the surfaces of a contact by its work of friction.
+/// Wear and heat that the work of friction causes on the surfaces of a contact.
 #[derive(Debug, Clone, Copy)]
 struct Surfaces {
-    /// Whether both surfaces are slaves, as where a surface touches itself.
+    /// Whether both surfaces are slaves, for example because a surface touches itself.
     both: bool,
-    /// Depth of wear per unit of its measure (length^2/force), and whether the measure is the work
-    /// of friction.
+    /// Depth of wear per unit of the measure of wear (length^2/force), and whether this measure is the work of
+    /// friction.
     wear: Option<(f64, bool)>,
     /// Part of the work of friction that heats each slave surface.
     heat: f64,
-    /// Whether all slave nodes have faces; the centres of discs have none.
+    /// Whether all slave nodes have faces; the centres of discs have no faces.
     has_faces: bool,
 }
 
 impl Surfaces {
-    /// The surfaces of a contact; `None` if it has neither wear nor heat.
+    /// The surfaces of a contact; `None` if the contact has neither wear nor heat.
     fn new(model: &Model, contact: &Contact, faces: &SlaveFaces) -> Option<Self> {
         let interaction = &contact.interaction;
         let both = contact.is_self_contact();
@@ -54,8 +54,8 @@ impl Surfaces {
         (interaction.wear.is_some() || interaction.heat.is_some()).then_some(own)
     }
 
-    /// Work, volume of wear and heat of all surfaces of the contact, for a work of friction and a normal force times
-    /// sliding path.
+    /// Work, volume of wear and heat of all surfaces of the contact, from the work of friction and from normal force
+    /// times sliding path.
     fn sums(&self, friction: f64, sliding: f64) -> Sums {
         let count = if self.both { 2.0 } else { 1.0 };
         let on_faces = if self.has_faces { count } else { 0.0 };
@@ -72,7 +72,7 @@ impl Surfaces {
 
 impl SurfaceWork {
     /// The sums at the start of a run. The sums are 0 at the nodes of slave surfaces with wear or heat and NaN
-    /// elsewhere; work and wear are NaN at nodes without faces too.
+    /// elsewhere; work and wear are also NaN at nodes without faces.
     pub fn new(model: &Model, faces: &SlaveFaces) -> Self {
         let of_contact = |contact: &Contact| Surfaces::new(model, contact, faces);
         let contacts: Vec<Option<Surfaces>> = model.contacts.iter().map(of_contact).collect();
@@ -128,8 +128,8 @@ impl SurfaceWork {
         self.fields.clone()
     }
 
-    /// Enters the works of the pairs in a converged increment. D is the work of friction of a pair, f the part of a
-    /// node in its normal force, and A the area of the node for this force:
+    /// Enters the works of the pairs in a converged increment. With the work of friction D of a pair, the part f of a
+    /// node in its normal force, and the area A of the node for this force:
     ///
     /// ```text
     /// w += f D/A,  h += k/H f Pn |Bt d|/A  or  k/H f D/A,  q += eta s f D    eq. (9.15)

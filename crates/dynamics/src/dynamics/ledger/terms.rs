@@ -1,5 +1,5 @@
-//! Terms of the energy ledger: one function for each, with its equation. See docs/theory/impacts.md, Ledger; for static
-//! increments docs/theory/bodies.md, Static steps.
+//! Terms of the energy ledger: one function for each term, with its equation. See docs/theory/impacts.md, Ledger; for
+//! static increments docs/theory/bodies.md, Static steps.
 
 use std::borrow::Cow;
 
@@ -21,14 +21,14 @@ pub(super) struct Kinematics<'m> {
 }
 
 impl Kinematics<'_> {
-    /// V_mid = (V0+ + V1)/2 of a dof.
+    /// Mean velocity V_mid = (V0+ + V1)/2 of a dof.
     fn v_mid(&self, dof: usize) -> f64 {
         (self.v0p[dof] + self.v1[dof]) / 2.0
     }
 }
 
-/// Forces of an increment over all dofs (force). Forces on dofs that follow others, and on nodes of rigid bodies, have
-/// been handed over to the dofs that hold or drive them.
+/// Forces of an increment over all dofs (force). Forces on dofs that follow other dofs, and on nodes of rigid bodies,
+/// have been handed over to the dofs that hold or drive these dofs.
 pub(super) struct HandedOver<'f> {
     load: Cow<'f, [f64]>,
     internal: Cow<'f, [f64]>,
@@ -67,7 +67,7 @@ impl<'f> HandedOver<'f> {
     }
 
     /// Energy that the backward Euler scheme removes from the free motion beyond the change of the kinetic energy: the
-    /// sum over all dofs, from their inertia, less the sum over the dofs of supports.
+    /// sum over all dofs, computed from the inertia, less the sum over the dofs of supports.
     ///
     /// ```text
     /// (d - dt V_mid).M A      eq. (4.27)
@@ -87,7 +87,7 @@ impl<'f> HandedOver<'f> {
 }
 
 /// Work of the loads in an increment `d` (energy). The forces lambda of hinges are part of the load R but do no work,
-/// so they are excluded:
+/// so these forces are excluded:
 ///
 /// ```text
 /// d.R - lambda.(C d)      eq. (9.1)
@@ -98,8 +98,8 @@ pub(super) fn load_work(d: &[f64], load: &[f64], hinges: &[f64], gaps: &[f64]) -
     dot(d, load) - dot(hinges, gaps)
 }
 
-/// Work of the impulses J = Bn^T Phi + Bt^T Psi (force time) on the velocity V0 from which they start and which they
-/// change by dV (energy):
+/// Work of the impulses J = Bn^T Phi + Bt^T Psi (force time) on the velocity V0 from which the impulses start, and on
+/// its change dV (energy):
 ///
 /// ```text
 /// J.(V0 + V0+)/2 = J.V0 + J.dV/2      eq. (9.4)
@@ -137,7 +137,7 @@ pub(super) fn scheme_dissipation(
     internal_work - (strain1 - strain0) - damping - material_dissipation
 }
 
-/// Strain energy at the end of an increment before nodes without mass came to rest (energy), computed from the energy
+/// Strain energy at the end of an increment before nodes without mass come to rest (energy), computed from the energy
 /// at rest:
 ///
 /// ```text
@@ -155,9 +155,9 @@ pub(super) fn enter_pair_works(energy: &mut Energy, works: &[PairWork]) {
     }
 }
 
-/// Enters the returns and losses of landings and releases. The terms of landings are D of eq. (6.5) with the work of
-/// the supports, eq. (6.10), and the friction taken back, eq. (6.13); the terms of releases are R and the work of the
-/// loads on the way to the rest, eq. (6.15).
+/// Enters the returns and losses of landings and releases. The terms of landings are the energy D of eq. (6.5) with the
+/// work of the supports, eq. (6.10), and the friction taken back, eq. (6.13). The terms of releases are the loss R and
+/// the work of the loads while nodes come to rest, eq. (6.15).
 pub(super) fn enter_returned(energy: &mut Energy, returned: &Returned) {
     let Release {
         loss, load_work, ..
@@ -169,7 +169,7 @@ pub(super) fn enter_returned(energy: &mut Energy, returned: &Returned) {
 }
 
 /// Work of supports between two equilibria (energy), along the path d from their forces f (dof, force) at the start to
-/// those at the end:
+/// their forces at the end:
 ///
 /// ```text
 /// sum over supports p of d_p (f0 + f1)_p/2      eq. (12.7)
@@ -179,14 +179,14 @@ pub(super) fn static_support_work(travel: &[f64], reactions: [&[(usize, f64)]; 2
     all.fold(0.0, |sum, &(p, reaction)| sum + travel[p] * reaction / 2.0)
 }
 
-/// Work along a path of the forces that are missing from equilibrium (force), less the work of the supports (energy):
-/// the part that rigid bodies absorb because their nodes move on chords.
+/// Work along a path of the out-of-balance forces (force), less the work of the supports (energy): the part that rigid
+/// bodies absorb because their nodes move on chords.
 pub(super) fn work_within(travel: &[f64], missing: &[f64], reactions: &[(usize, f64)]) -> f64 {
     let of_supports = |left: f64, &(p, reaction): &(usize, f64)| left - travel[p] * reaction;
     reactions.iter().fold(dot(travel, missing), of_supports)
 }
 
-/// The balance of all energies; `start` is T + W at the start of the analysis:
+/// The balance of all energies; `start` is the energy T + W at the start of the analysis:
 ///
 /// ```text
 /// balance = T + W - (T + W)_start - external_work - thermal_work - normal_contact_work
@@ -218,7 +218,7 @@ mod tests {
         );
     }
 
-    /// Forces of an increment of which none is handed over to other dofs.
+    /// Forces of an increment in which no dof hands its force over to other dofs.
     fn forces(load: [f64; 2], internal: [f64; 2], contact: [f64; 2]) -> HandedOver<'static> {
         let own = |force: [f64; 2]| Cow::Owned(force.to_vec());
         HandedOver {
@@ -311,7 +311,7 @@ mod tests {
     }
 
     /// A spring of energy k u⁴/4 whose force is evaluated at mid-increment, a dashpot c, and a flow that dissipates
-    /// 1/2. The force of the spring at u/2 is k u³/8, so its work is k u⁴/8 less than its energy.
+    /// 1/2. The force of the spring at u/2 is k u³/8, so this work is less than the energy of the spring by k u⁴/8.
     #[test]
     fn the_scheme_dissipates_what_no_other_term_has() {
         let (k, u, c, dt): (f64, f64, f64, f64) = (3.0, 2.0, 0.5, 0.25);
@@ -323,7 +323,7 @@ mod tests {
     }
 
     /// A load R holds a node on a spring k at u until its contact opens; then the node comes to rest at R/k. The node
-    /// loses k (u - R/k)²/2, by which W - R.u decreases.
+    /// loses the energy k (u - R/k)²/2, by which the potential W - R.u decreases.
     #[test]
     fn the_strain_energy_before_the_rest_is_that_of_the_place_left() {
         let (k, load, u) = (4.0, 1.0, 0.75);
@@ -350,8 +350,8 @@ mod tests {
         }
     }
 
-    /// The works of two pairs are added to those in the ledger. The work of a fit belongs to the supports of the fit
-    /// and is entered there.
+    /// The works of two pairs are added to the works in the ledger. The work of a fit belongs to the supports of the
+    /// fit and is entered there.
     #[test]
     fn pairs_add_their_normal_work_and_their_friction() {
         let mut energy = Energy {
@@ -371,8 +371,8 @@ mod tests {
         assert_eq!(energy, expected);
     }
 
-    /// Returns and releases leave the balance unchanged if the kinetic energy has changed by them. D, the work of
-    /// supports and the energy from friction are gained; the strain energy has lost R less the work of loads.
+    /// Returns and releases leave the balance unchanged if the kinetic energy has changed by them. The motion gains the
+    /// energy D, the work of supports and the energy from friction; the strain energy loses R less the work of loads.
     #[test]
     fn what_is_given_back_keeps_the_balance() {
         let mut energy = Energy {
@@ -409,7 +409,7 @@ mod tests {
         near(balance(&energy, 0.0), 0.0);
     }
 
-    /// Two supports at the ends of a spring k stretch it from u to u + d; their work is the change of k u²/2.
+    /// Two supports at the ends of a spring k stretch the spring from u to u + d; their work is the change of k u²/2.
     #[test]
     fn static_supports_stretch_a_linear_spring() {
         let (k, u, travel): (f64, f64, [f64; 3]) = (6.0, 0.5, [-0.125, 9.0, 0.25]);

@@ -1,5 +1,5 @@
-//! Touches: contacts of two bodies from the landing of a first node until no node is closed. Landings of nodes that
-//! take over from nodes that have opened. See docs/theory/impacts.md, Touches.
+//! Touches: contacts of two bodies from the landing of a first node until no node is closed. The module also finds
+//! landings of nodes that take over from nodes that have opened. See docs/theory/impacts.md, Touches.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ use crate::dynamics::step::{Hold, Interval, StepProblem, holds};
 use crate::model::{Bodies, Mesh};
 use crate::vectors::{angle, difference};
 
-/// Angle (rad) from which on a surface has a corner, at which a contact ends however large it is.
+/// Angle (rad) from which on a surface has a corner, where a contact area ends, whatever its size.
 const CORNER: f64 = 1.0;
 
 /// One side of a touch: a body, or the rigid surface of a contact.
@@ -46,7 +46,7 @@ struct TouchUnderWay {
 }
 
 impl Touches {
-    /// The touches at the start of a run: none.
+    /// The list of touches at the start of a run, which is empty.
     pub fn new(mesh: &Mesh) -> Self {
         Touches {
             corners: corners(mesh),
@@ -60,8 +60,8 @@ impl Touches {
         transfer_fields!(archive, self => Self { increments, under_way; corners })
     }
 
-    /// Enters a converged increment. Adds the work of nodes that take over from others to the contacts, and returns the
-    /// touches that have ended.
+    /// Enters a converged increment. Adds the work of nodes that take over from other nodes to the contacts, and
+    /// returns the touches that have ended.
     pub fn enter(
         &mut self,
         problem: &StepProblem,
@@ -128,7 +128,7 @@ impl Touches {
     }
 }
 
-/// The two partners of a constraint in increasing order, and 1 if the slave is the first, else -1.
+/// The two partners of a constraint in increasing order, and 1 if the slave is the first partner, else -1.
 fn partners(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
     let [s, a, _] = constraint.pair().nodes;
     let side = |node: usize| match bodies.of_node[node] {
@@ -141,8 +141,8 @@ fn partners(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
     }
 }
 
-/// The two partners of a constraint in increasing order, and 1 if the slave surface of the contact is on the first,
-/// else -1.
+/// The two partners of a constraint in increasing order, and 1 if the slave surface of the contact belongs to the first
+/// partner, else -1.
 fn sides(bodies: &Bodies, constraint: &Constraint) -> ([Partner; 2], f64) {
     let (both, sign) = partners(bodies, constraint);
     (
@@ -175,8 +175,8 @@ impl TouchUnderWay {
         }
     }
 
-    /// Nodes that land after others have opened, with the work Pn (Bn d) of their landings. If more nodes land than
-    /// have opened, each counts with the same share, since their order is arbitrary.
+    /// Nodes that land after other nodes have opened, with the work Pn (Bn d) of their landings. If more nodes land
+    /// than have opened, each landing counts with the same share, since the order of the nodes is arbitrary.
     fn hand_over(
         &mut self,
         pairs: &[(&Constraint, &ClosedPair)],
@@ -216,7 +216,7 @@ impl TouchUnderWay {
         }
     }
 
-    /// The touch as it ends at a time; `mass` is the reduced mass of its bodies.
+    /// The result of a touch that ends at a time; `mass` is the reduced mass of its bodies.
     fn end(self, time: f64, mass: f64) -> Touch {
         let [x, y] = self.impulse;
         let impulse = x.hypot(y);
@@ -264,8 +264,8 @@ impl FreeMasses {
     }
 }
 
-/// For every node whether the outline of its body turns there by more than [`CORNER`], or does not pass through it
-/// exactly once.
+/// For every node whether the outline of its body turns at the node by more than [`CORNER`], or does not pass through
+/// it exactly once.
 fn corners(mesh: &Mesh) -> Vec<bool> {
     let x = |node: usize| mesh.coordinates[node];
     let mut sides: Vec<[Vec<usize>; 2]> = vec![Default::default(); mesh.node_count()];

@@ -11,7 +11,8 @@ pub struct Momentum {
     pub consistent_angular: Option<f64>,
     /// Linear momentum that mass-proportional damping has removed since the start of the analysis (mass length/time).
     pub damped_linear: [f64; 2],
-    /// Angular momentum that mass-proportional damping has removed (mass length^2/time).
+    /// Angular momentum that mass-proportional damping has removed since the start of the analysis (mass
+    /// length^2/time).
     pub damped_angular: f64,
 }
 
@@ -35,8 +36,7 @@ pub struct BodyResult {
 }
 
 impl BodyResult {
-    /// Sets to zero the components that vanish in a body of revolution, all except those along its
-    /// axis.
+    /// Sets to zero the components that vanish in a body of revolution, that is, all components except along its axis.
     pub(crate) fn keep_to_axis(&mut self) {
         self.center[0] = 0.0;
         self.velocity[0] = 0.0;
@@ -46,7 +46,7 @@ impl BodyResult {
     }
 }
 
-/// Reaction that holds a rigid body, and the motion of one that turns.
+/// Reaction that holds a rigid body, and the motion of a rigid body that turns.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct RigidReaction {
     /// Force.

@@ -1,6 +1,6 @@
 //! Resultants, impulses, impacts and errors of the contacts.
 
-/// Impulses of a contact: those of its forces, of its impacts and of landing returns.
+/// Impulses of a contact: of its forces, of its impacts and of landing returns.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct ContactImpulse {
     /// Impulse on the slave surface (force time).
@@ -24,9 +24,9 @@ pub struct ContactImpulse {
 pub struct ContactViolation {
     /// Largest overlap of an open pair.
     pub overlap: f64,
-    /// Largest gap of a closed pair, in absolute value.
+    /// Largest absolute value of the gap of a closed pair.
     pub gap: f64,
-    /// Largest slip of a sticking pair in the increment, in absolute value.
+    /// Largest absolute value of the slip of a sticking pair in the increment.
     pub slip: f64,
     /// Largest penetration: of an open pair, of edges that cross, or of nodes in contact from surface to surface, in
     /// lengths of the edge.
@@ -47,13 +47,13 @@ pub struct ContactOnBody {
 pub struct ContactResultant {
     /// Force on the slave surface (force).
     pub force: [f64; 2],
-    /// Moment of that force about the origin (force length).
+    /// Moment of the force on the slave surface about the origin (force length).
     pub moment: f64,
     /// Sum of the normal forces Pn (force).
     pub normal: f64,
     /// Sum of the tangential forces Pt (force).
     pub tangential: f64,
-    /// Number of pairs with Pn > 0.
+    /// Number of closed pairs (Pn > 0).
     pub closed: usize,
     /// Number of closed pairs that do not slip.
     pub sticking: usize,
@@ -61,19 +61,19 @@ pub struct ContactResultant {
     pub min_gap: f64,
     /// Mean coefficient of friction of the closed pairs, weighted by Pn; NaN without closed pairs.
     pub friction_coefficient: f64,
-    /// Largest max(|Pt| - mu Pn, 0), or ||Pt| - mu Pn| for a pair that slips, divided by the largest Pn. The error is 0
-    /// without contact; mu is the coefficient of the law.
+    /// Largest error of the friction: max(|Pt| - mu Pn, 0), or ||Pt| - mu Pn| for a pair that slips, divided by the
+    /// largest Pn. Without contact the error of friction is 0; mu is the coefficient of the law.
     pub cone_violation: f64,
     /// Distance of the pairs' total impulses from the cone in the increment, with impacts and returns; for a pair whose
-    /// total normal impulse pulls, it is the pull.
+    /// total normal impulse pulls, the distance is this pull.
     pub impulse_cone_violation: f64,
     /// Moment of the force about the reference node of a rigid master (force length); 0 for other
     /// masters.
     pub reference_moment: f64,
     /// Work of the normal contact forces since the start of the analysis.
     pub normal_work: f64,
-    /// Part of the normal work at nodes that landed where others of the same two bodies had opened, while the bodies
-    /// stayed in contact.
+    /// Part of the normal work at nodes that landed where other nodes of the same two bodies had opened, while the
+    /// bodies stayed in contact.
     pub handover_work: f64,
     /// Energy dissipated by friction since the start of the analysis.
     pub friction_dissipation: f64,
@@ -83,9 +83,9 @@ pub struct ContactResultant {
     /// Energy that nodes without mass lost after releases of the contact since the start of the
     /// analysis.
     pub release_loss: f64,
-    /// Impulses of the increment.
+    /// Impulses of the contact in the increment.
     pub impulse: ContactImpulse,
-    /// Impulses since the start of the analysis.
+    /// Impulses of the contact since the start of the analysis.
     pub impulse_sum: ContactImpulse,
     /// Force on each body in self-contact; empty for two surfaces.
     pub bodies: Vec<ContactOnBody>,
@@ -107,14 +107,14 @@ pub struct Touch {
     pub first: usize,
     /// Number of the last increment of the touch.
     pub last: usize,
-    /// Largest number of nodes of one side in contact at a time.
+    /// Largest number of nodes of one side that were in contact at the same time.
     pub nodes: usize,
     /// Whether the contact reached a corner of an outline.
     pub is_at_corner: bool,
     /// Impulse J on one of the bodies (force time).
     pub impulse: f64,
-    /// J²/(8 m) with the reduced mass m of the bodies: their kinetic energy of approach if they rebound with the same
-    /// speed; 0 if both are held.
+    /// Energy J²/(8 m) with the reduced mass m of the bodies: their kinetic energy of approach if they rebound with the
+    /// same speed; 0 if both bodies are held.
     pub energy: f64,
 }
 
@@ -133,7 +133,7 @@ pub struct ReturnedImpulse {
     pub tangential: f64,
     /// Normal impulse of the return (force time).
     pub returned_normal: f64,
-    /// Tangential impulse that comes with `returned_normal` (force time).
+    /// Tangential impulse of the return (force time).
     pub returned_tangential: f64,
 }
 

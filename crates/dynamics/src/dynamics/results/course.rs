@@ -6,7 +6,7 @@
 pub enum Course {
     /// Corrections grew.
     Growing {
-        /// The corrections grew after the pass with this number.
+        /// The corrections grew after the pass with the given number.
         from: usize,
     },
     /// Pairs went to and fro between two states; the list has one entry for each slave node.
@@ -34,10 +34,10 @@ pub enum Alternation {
     Changing {
         /// Slave node.
         slave: usize,
-        /// Ends a and b of both segments.
+        /// Ends a and b of the two segments between which the node changed.
         segments: [[usize; 2]; 2],
     },
-    /// The pair of the node stuck and slid, or slid one way and the other: slave, segment ends a
-    /// and b.
+    /// The pair of the node changed between sticking and sliding, or between sliding one way and the other: slave,
+    /// segment ends a and b.
     Sliding([usize; 3]),
 }

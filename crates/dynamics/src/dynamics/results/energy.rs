@@ -14,7 +14,7 @@ pub struct Energy {
     pub hourglass: f64,
     /// Work of the loads and of the prescribed motion of supports.
     pub external_work: f64,
-    /// Work of the temperature: energy that it adds to materials that expand.
+    /// Work of the temperature: energy that temperature changes add to materials that expand.
     pub thermal_work: f64,
     /// Work of the normal contact forces.
     pub normal_contact_work: f64,
@@ -42,7 +42,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Enters the work of the temperature in an increment, and the larger of its two parts.
+    /// Enters the work of the temperature in an increment, and the larger of the two parts of this work.
     pub(crate) fn enter_thermal_work(&mut self, [work, part]: [f64; 2]) {
         self.thermal_work += work;
         self.scale = larger(self.scale, part);

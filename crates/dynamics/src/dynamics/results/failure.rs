@@ -27,14 +27,14 @@ pub enum Cause {
         /// Ends of the segment (indices).
         segment: [usize; 2],
     },
-    /// A body that only contact holds is not in balance, whatever the contact forces.
+    /// A body that only contact holds cannot be in balance with any contact forces.
     Unbalanceable(Box<Unbalanced>),
     /// The equilibrium is not stable.
     Unstable {
         /// Node (index) whose pivot is not positive.
         node: usize,
     },
-    /// A static increment leads much farther than the last one under the same load, and so to another equilibrium.
+    /// A static increment leads much farther than the last increment, and so to another equilibrium.
     Jump {
         /// Node (index) that moves most.
         node: usize,
@@ -51,7 +51,7 @@ pub enum Cause {
         /// Largest truncation error that is accepted.
         tolerance: f64,
     },
-    /// The factorisation or a solve with it failed.
+    /// The factorisation, or a solve with the factors, failed.
     LinearSolver(LinearError),
     /// The passes diverged until numbers were not finite.
     Diverged,
@@ -86,7 +86,7 @@ pub enum Cause {
         /// The balance relative to the largest energy.
         part: f64,
         /// Whether the round-off of positions causes forces whose work in an increment is significant by itself;
-        /// halving the increment does not reduce it.
+        /// halving the increment does not reduce this work.
         is_round_off: bool,
     },
     /// A complementarity problem was not solved.
@@ -155,7 +155,7 @@ pub struct Worst {
     pub position: [f64; 2],
     /// Name of the quantity that is worst at the node.
     pub quantity: &'static str,
-    /// Value of the quantity relative to the scale of the tolerance.
+    /// Value of the quantity relative to the scale to which the tolerance refers.
     pub value: f64,
 }
 
@@ -245,7 +245,7 @@ impl From<LinearError> for Cause {
 }
 
 impl Cause {
-    /// Whether the increment would fail in halves too.
+    /// Whether the increment would also fail if it were halved.
     pub fn stays(&self) -> bool {
         matches!(
             self,
@@ -256,7 +256,7 @@ impl Cause {
         )
     }
 
-    /// Whether a number that has grown too large is the only cause of the failure.
+    /// Whether the failure says no more than that a number has grown too large.
     pub(crate) fn is_overflow(&self) -> bool {
         match self {
             Cause::LinearSolver(LinearError::NotFinite(_)) | Cause::NotFinite { .. } => true,

@@ -34,7 +34,7 @@ pub struct SolverCounts {
     pub residual: f64,
     /// Errors of the pairs against the contact law at the end of the increment.
     pub violation: ContactViolation,
-    /// Largest force that holds a motion resisted only by facets, relative to the normal forces on the body.
+    /// Largest force that holds a motion which only facets resist, relative to the normal forces on the body.
     pub held: f64,
     /// Whether the increment converged.
     pub converged: bool,
@@ -54,9 +54,9 @@ pub struct IncrementReport {
     pub step_time: f64,
     /// Length of the increment; 0 at the start.
     pub dt: f64,
-    /// Whether this is the last increment of its step.
+    /// Whether the increment is the last one of its step.
     pub ends_step: bool,
-    /// Truncation error relative to the displacements, in a step in which it decides the
+    /// Truncation error relative to the displacements, in a step in which this error decides the length of the
     /// increments.
     pub truncation_error: Option<f64>,
     /// Motion and state at the end of the increment.
@@ -84,10 +84,10 @@ pub struct IncrementReport {
     pub strain: Strained,
     /// Resultants, one for each contact of the model.
     pub contacts: Vec<ContactResultant>,
-    /// Difference between the friction work, wear and heat at the nodes and those of the contacts, relative to all that
-    /// was added since the start.
+    /// Difference between the sums of friction work, wear and heat over the nodes and over the contacts, relative to
+    /// the sum of absolute values since the start.
     pub surface_work_difference: f64,
-    /// Landings of this increment.
+    /// Landings in the increment.
     #[serde(skip)]
     pub landings: Vec<Landing>,
     /// Total impulses of the pairs to which energy was given back.
@@ -96,10 +96,10 @@ pub struct IncrementReport {
     /// Touches that ended in the increment.
     #[serde(skip)]
     pub touches: Vec<Touch>,
-    /// The body with the largest force that holds a motion resisted only by facets.
+    /// The body with the largest force that holds a motion which only facets resist.
     #[serde(skip)]
     pub held: Option<Box<Unbalanced>>,
-    /// Counters of the solver in this increment.
+    /// Counters of the solver in the increment.
     pub solver: SolverCounts,
     /// Its passes.
     #[serde(skip)]
@@ -130,7 +130,7 @@ impl IncrementReport {
         }
     }
 
-    /// Shortens vectors over the dofs to those of `nodes` nodes.
+    /// Shortens vectors over all dofs to the dofs of the first `nodes` nodes.
     pub fn keep_nodes(&mut self, nodes: usize) {
         let (state, nodal) = (&mut self.state, &mut self.nodal);
         for vector in [

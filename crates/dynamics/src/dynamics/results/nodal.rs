@@ -1,6 +1,6 @@
 //! Results at nodes. See docs/theory/impacts.md, Pressure and Reactions.
 
-/// Contact status of a node as slave; a node with several pairs has the highest status of them.
+/// Contact status of a node as slave; a node with several pairs has the highest status of its pairs.
 #[derive(
     Debug,
     Clone,
@@ -35,7 +35,7 @@ pub enum NodeMass {
     Own = 0,
     /// The node keeps its own mass although it lies on a contact surface of a body.
     Kept = 1,
-    /// The node has no mass: its donors carry it.
+    /// The node has no mass: its donors carry its mass.
     None = 2,
 }
 
@@ -51,7 +51,7 @@ pub struct NodalResults {
     pub contact_force: Vec<f64>,
     /// Force of the tie on every tied node, `2 N` entries (force); empty without ties.
     pub tie_force: Vec<f64>,
-    /// Force of every hinge on its first node (force); on its second node the opposite force acts.
+    /// Force of every hinge on its first node (force); the opposite force acts on the second node of the hinge.
     pub hinge_force: Vec<[f64; 2]>,
     /// Gap of the node to its segment, `N` entries (length); NaN without a candidate.
     pub gap: Vec<f64>,
@@ -68,11 +68,12 @@ pub struct NodalResults {
     pub mass: Vec<NodeMass>,
 }
 
-/// Results of friction at slave nodes. Each list has `N` entries if a contact of the deck has such results, else it is
-/// empty; entries are NaN at nodes that are not slave nodes.
+/// Results of friction at slave nodes. A list has `N` entries if a contact of the deck has the result of this list,
+/// else the list is empty. Entries are NaN at nodes that are not slave nodes.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct FrictionResults {
-    /// Mean coefficient of friction of the closed pairs, weighted by Pn, if it varies; NaN without closed pairs.
+    /// Mean coefficient of friction of the closed pairs, weighted by Pn, if the coefficient varies; NaN without closed
+    /// pairs.
     pub coefficient: Vec<f64>,
     /// Work of friction since the start of the analysis, divided by the area of the node
     /// (energy/length^2).

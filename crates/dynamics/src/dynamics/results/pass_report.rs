@@ -3,7 +3,7 @@
 /// One pass of an increment.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PassReport {
-    /// Relative force residual with the contact forces of this pass.
+    /// Relative force residual with the contact forces of the pass.
     pub residual: f64,
     /// Relative displacement correction.
     pub correction: f64,

@@ -12,7 +12,7 @@ pub struct Timings {
     pub assembly: Duration,
     /// Factorisations.
     pub factorization: Duration,
-    /// Solves with the factors, including those for the Delassus matrices.
+    /// Solves with the factors, including solves for the Delassus matrices.
     pub solve: Duration,
     /// Contact search: territories and their candidates.
     pub search: Duration,
@@ -22,21 +22,21 @@ pub struct Timings {
     pub lcp: Duration,
 }
 
-/// How a run ended.
+/// Outcome of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     /// All steps of the run are done.
     Finished,
-    /// An increment failed for good; the results up to it are valid.
+    /// An increment failed for good; the results before this increment are valid.
     Stopped(Box<Failure>),
-    /// The observer requested the end of the run; the results up to there are valid.
+    /// The observer requested the end of the run; the results up to this end are valid.
     Interrupted,
 }
 
 /// Totals of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunSummary {
-    /// How the run ended.
+    /// Outcome of the run.
     pub outcome: Outcome,
     /// Number of increments done.
     pub increments: usize,

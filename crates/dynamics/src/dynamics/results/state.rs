@@ -12,8 +12,8 @@ pub struct State {
     pub v: Vec<f64>,
     /// Acceleration (length/time^2).
     pub a: Vec<f64>,
-    /// Internal variables of the materials at all integration points, element by element; they are accepted or dropped
-    /// with the rest of the state.
+    /// Internal variables of the materials at all integration points, element by element; the variables are accepted or
+    /// dropped with the rest of the state.
     pub internal: Vec<f64>,
     /// Temperature of every node of the mesh; empty if the deck gives no temperatures.
     pub temperature: Vec<f64>,

@@ -12,17 +12,17 @@ use crate::dynamics::release_return::return_release;
 use crate::dynamics::results::{Cause, Failure, State};
 use crate::dynamics::step::{Interval, StepPlace, StepProblem, Workspace};
 
-/// Largest number of halvings of an increment because contact adds energy.
+/// Largest number of times that an increment is halved because contact adds energy.
 const GAIN_HALVINGS: u32 = 5;
 
-/// Start of a subincrement: state and energies at the end of the last one.
+/// Start of a subincrement: state and energies at the end of the last subincrement.
 #[derive(Clone, Copy)]
 pub(crate) struct SubincrementStart<'a> {
     pub state: &'a State,
     pub ledger: &'a Ledger,
 }
 
-/// An accepted subincrement and the ledger with its energies.
+/// An accepted subincrement, and the ledger with the energies of the subincrement.
 pub(crate) struct Accepted {
     pub subincrement: Subincrement,
     pub ledger: Ledger,
@@ -30,7 +30,7 @@ pub(crate) struct Accepted {
 
 impl Accepted {
     /// Finishes a converged subincrement of the `nominal` increment, which has been halved `halvings` times, and
-    /// accepts it if it passes the checks.
+    /// accepts the subincrement if it passes the checks.
     pub fn new(
         problem: &StepProblem,
         workspace: &mut Workspace,

@@ -1,5 +1,5 @@
-//! Automatic increments of a step, by their passes or by their truncation error. See docs/theory/time.md,
-//! Automatic increments.
+//! Automatic increments of a step, whose length follows from their passes or from their truncation error. See
+//! docs/theory/time.md, Automatic increments.
 
 use super::impact_control::{EVENT_HALVINGS, MOST_EVENTS};
 use super::nominal_increments::NominalIncrement;
@@ -12,25 +12,25 @@ use crate::model::{Incrementation, Increments};
 const EASY_PASSES: usize = 5;
 /// Number of easy increments in a row after which increments grow.
 const EASY_INCREMENTS: u32 = 2;
-/// Factor by which an increment grows after easy ones.
+/// Factor by which an increment grows after easy increments.
 const GROWTH: f64 = 1.5;
-/// Factor on the length of an increment after it has failed.
+/// Factor by which the length of an increment changes after it has failed.
 const CUT: f64 = 0.25;
-/// Rest of the step, as a part of an increment, below which it is added to the increment.
+/// Rest of the step, as a part of an increment, below which this rest is added to the increment.
 const LEFT_OVER: f64 = 1e-6;
 /// Largest number of rejections in a row because of the truncation error.
 const REJECTIONS: u32 = 2;
 /// Least factor on the length of an increment after a rejection.
 const LEAST_PART: f64 = 0.3;
-/// Safety factors on the length whose truncation error would equal the tolerance: after a rejection, and in growth.
+/// Safety factors on the length whose truncation error would equal the tolerance: after a rejection, and for growth.
 const SAFE: f64 = 0.85;
 const SAFE_GROWTH: f64 = 0.9;
 /// Least growth for which new factors of K* are worth their cost.
 const WORTHWHILE: f64 = 1.25;
 
-/// Automatic increments of a whole step: longer after easy increments, shorter after failed ones. If the passes decide
-/// the increments, a failed one is cut to a quarter; the truncation error may decide them instead (docs/theory/time.md,
-/// Automatic increments).
+/// Automatic increments of a whole step: longer after easy increments, shorter after failed increments. If the passes
+/// decide the length of increments, a failed increment is cut to a quarter; the truncation error may decide the length
+/// instead (docs/theory/time.md, Automatic increments).
 pub(crate) struct Automatic {
     /// The step.
     nominal: NominalIncrement,
@@ -77,7 +77,7 @@ impl Automatic {
         self.nominal
     }
 
-    /// Growth that an accepted increment allows the next one; `None` if it was not easy.
+    /// Growth that an accepted increment allows the next increment; `None` if the increment was not easy.
     fn allowed_growth(&self, how: Ended) -> Option<f64> {
         let growth = match self.increments.incrementation {
             Incrementation::Error { tolerance } => {

@@ -1,15 +1,15 @@
-//! Impact events: a nominal increment in subincrements that end at impacts, or in halves where one
-//! fails. See docs/theory/impacts.md, Impacts as events.
+//! Impact events: a nominal increment is divided into subincrements that end at impacts; a subincrement that fails is
+//! halved. See docs/theory/impacts.md, Impacts as events.
 
 use super::nominal_increments::NominalIncrement;
 use super::time_control::{Ended, NextSubincrement, TimeControl};
 use crate::archive::{Archive, ArchiveError, transfer_fields};
 use crate::dynamics::step::Interval;
 
-/// Largest number of impact events within a nominal increment. After so many impact events the rest of the increment is
-/// one subincrement without events, so that chattering contacts do not stall a run.
+/// Largest number of impact events within a nominal increment. Behind the last of these events the rest of the
+/// increment is one subincrement without events, so that chattering contacts do not stall a run.
 pub(super) const MOST_EVENTS: usize = 50;
-/// Number of halvings of a subincrement from which on nodes land within it.
+/// Number of halvings of a subincrement from which on nodes land within the subincrement.
 pub(super) const EVENT_HALVINGS: u32 = 2;
 
 /// A nominal increment that is solved up to the step time `from`.
@@ -17,8 +17,7 @@ pub(crate) struct ImpactControl {
     nominal: NominalIncrement,
     from: f64,
     events: usize,
-    /// End of the nominal increment and the ends of its halves; the last entry limits the next
-    /// subincrement.
+    /// End of the nominal increment and ends of its halves; the last entry of the list limits the next subincrement.
     ends: Vec<f64>,
 }
 
@@ -78,7 +77,7 @@ mod tests {
     use crate::dynamics::run::nominal_increments::tests::nominal;
     use crate::dynamics::run::time_control::testing::{IMPACT, SMOOTH};
 
-    /// The first part of an interval, of the given length, up to an impact.
+    /// The first part, of the given length, of an interval that ends at an impact.
     fn up_to(interval: Interval, length: f64) -> Interval {
         let end = interval.start.step + length;
         Interval {

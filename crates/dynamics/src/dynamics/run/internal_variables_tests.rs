@@ -1,5 +1,5 @@
-//! A law with internal variables in whole runs: they are committed with an accepted increment and dropped
-//! with a failed attempt. See docs/theory/elements.md.
+//! A law with internal variables in whole runs: the variables are committed with an accepted increment and dropped with
+//! a failed attempt. See docs/theory/elements.md.
 
 use std::io;
 
@@ -50,7 +50,7 @@ fn step(dt: f64, count: usize) -> Step {
 #[derive(Default)]
 struct Keep {
     reports: Vec<IncrementReport>,
-    /// Number of accepted reports before each cutback.
+    /// Number of accepted increments before each cutback.
     cutbacks: Vec<usize>,
 }
 

@@ -30,22 +30,22 @@ use crate::linear::{LinearError, larger};
 use crate::model::{Incrementation, Procedure, Step};
 use crate::prepare::{PreparedModel, deepest_fault};
 
-/// A static increment may be a jump if its displacement exceeds this multiple of the displacement at the rate of the
-/// last increment.
+/// Ratio of the displacement of a static increment to the displacement at the rate of the last increment, above which
+/// the increment may be a jump.
 const FAR: f64 = 5.0;
-/// Displacement increment, relative to the displacements, below which it is not a jump.
+/// Displacement increment, relative to the displacements, below which the increment is not a jump.
 const COUNTS: f64 = 0.01;
 /// An increment that is repeated with a shorter length is no jump if its rate of displacement is at most this multiple
 /// of the rate of the rejected longer increment.
 const SHRINKS: f64 = 1.5;
 
-/// Errors that end a run, other than a failed increment.
+/// Errors that end a run; a failed increment is not among these errors.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The observer could not receive the results.
     #[error(transparent)]
     Observer(#[from] io::Error),
-    /// A checkpoint is of another model.
+    /// A checkpoint belongs to another model.
     #[error("the checkpoint cannot be read: {0}")]
     Checkpoint(#[from] ArchiveError),
 }
@@ -53,7 +53,7 @@ pub enum RunError {
 /// Runs all steps of a model; the observer receives the start and every increment.
 ///
 /// # Errors
-/// Errors of the observer are returned. A failed increment is an [`Outcome`].
+/// The observer has failed. A failed increment is an [`Outcome`], not an error.
 pub fn run(prepared: &PreparedModel, observer: &mut dyn Observer) -> Result<RunSummary, RunError> {
     let discretization = Discretization::new(prepared);
     Runner::new(&discretization, observer).steps(None, 0.0)
@@ -64,7 +64,7 @@ pub fn run(prepared: &PreparedModel, observer: &mut dyn Observer) -> Result<RunS
 /// times of the continuation.
 ///
 /// # Errors
-/// Returns errors of the observer, or an error if the checkpoint is of another model.
+/// The observer has failed, or the checkpoint belongs to another model.
 pub fn resume(
     prepared: &PreparedModel,
     checkpoint: &[u8],
@@ -109,8 +109,7 @@ struct RunProgress {
     nominal: usize,
 }
 
-/// Initial velocities of a model; those of angles are multiplied by their length, as in the
-/// unknowns.
+/// Initial velocities of a model; the velocity of an angle is multiplied by a length of its body, as in the unknowns.
 fn initial_velocity(discretization: &Discretization) -> Vec<f64> {
     let mut v = discretization.model.initial_velocity.clone();
     v.resize(discretization.model.dof_count(), 0.0);
@@ -120,7 +119,7 @@ fn initial_velocity(discretization: &Discretization) -> Vec<f64> {
     v
 }
 
-/// The data of an increment of length `dt` from a state for its truncation error.
+/// Data for the truncation error of an increment of length `dt` that starts from a state.
 fn ends<'a>(start: &'a State, solved: &'a Solved, dt: f64) -> Ends<'a> {
     Ends {
         u1: &solved.end.u,
@@ -147,13 +146,13 @@ struct Runner<'m, 'o> {
     ledger: Ledger,
     /// Largest displacements and forces of earlier steps, on which tolerances are based.
     seen: Seen,
-    /// The last attempt at a static increment, if it has led too far.
+    /// The last attempt at a static increment, if this attempt has led too far.
     rejected: Option<RejectedTravel>,
     /// Procedure of the last step.
     procedure: Procedure,
     /// The motion of the last increment, in a static step.
     path: Option<Path>,
-    /// Truncation error of the increments, in a step in which it decides their length.
+    /// Truncation error of the increments, in a step in which this error decides their length.
     accuracy: Option<TruncationError>,
     accounts: Accounts,
     summary: RunSummary,
@@ -199,7 +198,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Runs the steps, the last one longer than in the deck by a time `extension`; `resumed` is the checkpoint from
-    /// which they continue.
+    /// which the steps continue.
     fn steps(
         mut self,
         mut resumed: Option<Archive>,
@@ -233,7 +232,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(self.summary)
     }
 
-    /// Transfers the data that increments hand on, except the workspace of their step and their time control.
+    /// Transfers the data that increments hand on, except workspace and time control of the step.
     fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         let dofs = self.state.u.len();
         transfer_fields!(archive, self => Runner {
@@ -262,7 +261,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         Ok(self.observer.checkpoint(archive.into_bytes())?)
     }
 
-    /// Runs a step, or its rest after the checkpoint `resumed`; returns how it ends.
+    /// Runs a step, or its rest after the checkpoint `resumed`; returns how the step ends.
     fn step(
         &mut self,
         step: &'m Step,
@@ -292,8 +291,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         outcome
     }
 
-    /// Removes the forces of contacts that a step removes, and of supports that it no longer has: at once in a dynamic
-    /// step, gradually over a static or quasi-static one.
+    /// Removes the forces of contacts that a step removes, and of supports that the step no longer has: at once in a
+    /// dynamic step, gradually over a static or quasi-static step.
     fn release(&mut self, problem: &mut StepProblem, step: &Step) {
         let removed = &step.contacts.removed;
         (self.state.contact).retain(|pair| !removed.contains(&pair.key.contact()));
@@ -472,7 +471,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// An accepted increment with its truncation error, in a step in which this error decides the increments. If the
-    /// error is too large, it is computed without the part of the motion that is too stiff for the increment.
+    /// error is too large, it is computed again without the part of the motion that is too stiff for the increment.
     ///
     /// # Errors
     /// Returns [`Cause::Inaccurate`] if the error is so large that the increment is to be repeated;
@@ -540,7 +539,7 @@ impl<'m, 'o> Runner<'m, 'o> {
         }
     }
 
-    /// Solves an increment of a static step, from the motion of the last one.
+    /// Solves an increment of a static step, from the motion of the last increment.
     fn equilibrium(
         &mut self,
         problem: &StepProblem<'m>,
@@ -602,10 +601,10 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Checks that a static increment does not lead to another equilibrium, that is, much farther than at the rate of
-    /// the last increment, or in the first one than by its tangent. The check passes too if the travel decreases with
-    /// the length of the increment, or is below the resolution of the passes. Bodies that only contact holds are not
-    /// checked, since they may move freely until contact begins; the other bodies may then move as far as by the
-    /// tangent.
+    /// the last increment, or (in the first increment) than by the tangent. An increment also passes the check if its
+    /// displacement decreases with the length of the increment, or is below the resolution of the passes. Bodies that
+    /// only contact holds are not checked, since they may move freely until contact begins. If contact alone holds some
+    /// bodies, the other bodies may move as far as by the tangent.
     fn check_jump(
         &mut self,
         problem: &StepProblem,
@@ -645,8 +644,8 @@ impl<'m, 'o> Runner<'m, 'o> {
         })
     }
 
-    /// Reports a failed attempt that is to be repeated with a smaller length. Returns the failure
-    /// if the repetition would fail too, or if there is no smaller length.
+    /// Reports a failed attempt that is to be repeated with a smaller length. Returns the failure if the repetition
+    /// would also fail, or if there is no smaller length.
     fn cut_back(
         &mut self,
         failure: Failure,
@@ -734,7 +733,7 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 
     /// Computes the velocity of supports and equations, and the acceleration, at the start of a dynamic step that does
-    /// not continue another; at the start of a static step both are zero.
+    /// not continue another dynamic step. At the start of a static step velocity and acceleration are zero.
     fn begin_motion(
         &mut self,
         problem: &StepProblem,
@@ -787,8 +786,8 @@ impl<'m, 'o> Runner<'m, 'o> {
     }
 }
 
-/// Forces that hold motions resisted only by facets in a static increment: the body with the largest force, and the
-/// largest force relative to the normal forces on its body, if it is above the tolerance.
+/// Forces that hold motions which only facets resist, in a static increment: the body with the largest force, and the
+/// largest force relative to the normal forces on its body, if this ratio is above the tolerance.
 fn held_motions(
     problem: &StepProblem,
     workspace: &Workspace,

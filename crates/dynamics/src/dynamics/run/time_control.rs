@@ -28,29 +28,28 @@ pub(crate) trait TimeControl {
     /// Continues from the end of an accepted interval.
     fn accepted(&mut self, interval: &Interval, how: Ended);
 
-    /// Truncation error above which a converged interval of this length is repeated; `None` if it is accepted with any
-    /// error.
+    /// Truncation error above which a converged interval of a given length is repeated; `None` if the interval is
+    /// accepted with any error.
     fn largest_error(&self, _dt: f64) -> Option<f64> {
         None
     }
 
-    /// Divides an interval that failed, or whose truncation error is too large.
+    /// Divides an interval that has failed, or whose truncation error is too large.
     fn failed(&mut self, interval: &Interval, error: Option<f64>);
 
     /// Transfers the progress of the nominal increment to or from an archive.
     ///
     /// # Errors
-    /// Returns an error if the archive is of another kind of control.
+    /// The archive belongs to another kind of time control.
     fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError>;
 
-    /// Whether an interval of this length may be cut once more; `dt_min` is the least length that
-    /// the step allows.
+    /// Whether an interval of a given length may be cut once more; `dt_min` is the least length that the step allows.
     fn may_be_cut(&self, dt: f64, dt_min: f64) -> bool {
         self.halvings() < HALVINGS && dt / 2.0 >= dt_min
     }
 }
 
-/// How an accepted interval ended.
+/// End of an accepted interval: impact, passes and error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ended {
     /// Whether an impact has ended the interval.

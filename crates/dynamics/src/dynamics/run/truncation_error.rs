@@ -10,13 +10,13 @@ use crate::vectors::distance;
 pub(crate) struct TruncationError {
     /// Displacement at the start of the step.
     start: Vec<f64>,
-    /// Largest displacement since the start of the step so far, at least the length by which fits separate surfaces in
-    /// the step.
+    /// Largest displacement since the start of the step so far; its least value is the length by which fits separate
+    /// surfaces in the step.
     travel: f64,
     /// Truncation error that the step allows.
     tolerance: f64,
-    /// The last two increments, the later one last; at first only the start of the step, as an
-    /// increment of length 0.
+    /// The last two increments, the latest last; at first the list holds only the start of the step, as an increment of
+    /// length 0.
     last: Vec<Past>,
 }
 
@@ -46,8 +46,8 @@ impl Ends<'_> {
 }
 
 impl TruncationError {
-    /// Data at the start of a step: its displacement and acceleration, the length `parted` by which its fits separate
-    /// surfaces, and the error that it allows.
+    /// Data at the start of a step: displacement and acceleration there, the length `parted` by which the fits of the
+    /// step separate surfaces, and the error that the step allows.
     pub fn new([u, a]: [&[f64]; 2], parted: f64, tolerance: f64) -> Self {
         TruncationError {
             start: u.to_vec(),
@@ -66,8 +66,8 @@ impl TruncationError {
     /// e = (dt³/12) (A - A_2)/(dt/2 + dt_1 + dt_2/2)    eq. (4.22)
     /// ```
     ///
-    /// Here index 1 is the last increment and 2 the one before it: a motion that is too stiff for the increments
-    /// changes its sign in each of them.
+    /// Here the index 1 is the last increment and 2 the increment before it: a motion that is too stiff for the
+    /// increments changes its sign in each increment.
     pub fn of(&self, problem: &StepProblem, ends: &Ends) -> Vec<f64> {
         let (before, since) = match &self.last[..] {
             [earlier, later] => (earlier, later.dt + earlier.dt / 2.0),
@@ -80,15 +80,15 @@ impl TruncationError {
         e
     }
 
-    /// The part of an error that is not too stiff for increments of length `dt`, where `k` is their
-    /// K*.
+    /// The part of an error that is not too stiff for increments of length `dt`, where `k` is the K* of these
+    /// increments.
     ///
     /// ```text
     /// e <- K*^-1 (2/dt²) M e    eq. (4.24)
     /// ```
     ///
     /// # Errors
-    /// Returns an error if the factors cannot be used.
+    /// The factors of K* cannot be used.
     pub fn filter(
         problem: &StepProblem,
         mut k: System,
@@ -103,8 +103,8 @@ impl TruncationError {
         Ok(e)
     }
 
-    /// The largest error of a body, in the norm of its mass, relative to the largest displacement of the step so far.
-    /// The part of a body's displacements that the passes do not resolve counts as within the tolerance.
+    /// The largest error of a body, in the norm of the body's mass, relative to the largest displacement of the step so
+    /// far. An error in a body's displacements that the passes do not resolve counts as within the tolerance.
     ///
     /// ```text
     /// sqrt(e.M e/m)/max |U - U_start|    eq. (4.23)

@@ -12,8 +12,7 @@ use crate::elements::Motion;
 use crate::vectors::{cross, difference, dot};
 
 /// Angles, in the configuration in which K* was assembled, of the bodies that are free or turn
-/// about one node. Bodies that are held otherwise have the angle 0, since their supports do not
-/// turn with them.
+/// about one node. Bodies held in another way have the angle 0, since their supports do not turn with them.
 pub(crate) struct BodyAngles {
     /// Nodes of the bodies that turn, each with its arm r0 from the centre of mass of the body times its mass (mass
     /// length).
@@ -50,17 +49,17 @@ impl BodyAngles {
         self.assembled = self.angles(problem, motion);
     }
 
-    /// Rotations of the bodies from the configuration in which K* was assembled to that of a motion (rad).
+    /// Rotations of the bodies from the configuration in which K* was assembled to the configuration of a motion (rad).
     pub fn since_assembly(&self, problem: &StepProblem, motion: Motion) -> PerBody {
         let angles = self.angles(problem, motion);
         let since = angles.iter().zip(&self.assembled).map(|(a, b)| a - b);
         since.collect()
     }
 
-    /// Mean rotation of every body in the configuration of a motion (rad); in the energy-momentum form in the mid
-    /// configuration:
+    /// Mean rotation of every body in the configuration of a motion (rad); in the energy-momentum form it is evaluated
+    /// in the mid configuration.
     ///
-    /// phi = atan2(sum m r0 x r, sum m r0.r), with r from any point, since sum m r0 = 0
+    /// The rotation is phi = atan2(sum m r0 x r, sum m r0.r), with r from any point, since sum m r0 = 0.
     fn angles(&self, problem: &StepProblem, motion: Motion) -> PerBody {
         let u = |dof: usize| match motion.start {
             Some(start) => (start[dof] + motion.end[dof]) / 2.0,
@@ -95,18 +94,18 @@ fn centres(problem: &StepProblem, mass: &[f64]) -> Vec<[f64; 2]> {
     sums.iter().map(centre).collect()
 }
 
-/// How supports and equations hold a body.
+/// Way in which supports and equations hold a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Hold {
     /// Neither supports nor equations hold the body.
     Free,
-    /// Both dofs of this node are prescribed, and no others.
+    /// Both dofs of one node of the body are prescribed, and no other dofs.
     Pinned(usize),
-    /// More dofs are prescribed, equations tie the body, or the body is one of revolution.
+    /// More dofs are prescribed, equations tie the body, or the body is a body of revolution.
     Held,
 }
 
-/// How the bodies of a step are held; bodies of revolution can only move along their axis.
+/// Way in which each body of a step is held; bodies of revolution can only move along their axis.
 pub(crate) fn holds(problem: &StepProblem) -> Vec<Hold> {
     let (parts, unknowns) = (problem.parts, &problem.unknowns);
     if problem.model.mesh.is_axisymmetric() {
@@ -220,8 +219,8 @@ mod tests {
         all
     }
 
-    /// Largest difference, relative to the largest entry, between the responses of turned factors and those of K*
-    /// assembled in the turned configuration. The first block has turned by `angle` since the assembly, and turns by
+    /// Largest difference, relative to the largest entry, between the responses of turned factors and the responses of
+    /// K* assembled in the turned configuration. The first block has turned by `angle` since the assembly, and turns by
     /// `increment` within an increment.
     fn error_of_turned_factors(supports: &[usize], angle: f64, increment: f64) -> f64 {
         let prepared = blocks();

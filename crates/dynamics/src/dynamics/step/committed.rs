@@ -9,18 +9,18 @@ use crate::linear::larger;
 /// State of the materials at the end of an increment.
 #[derive(Debug, Default)]
 pub(crate) struct Committed {
-    /// Internal variables, and the energy dissipated on the way to them.
+    /// Internal variables, and the energy dissipated since the start of the increment.
     pub updated: Updated,
-    /// Work of the temperature, and the larger of its two parts, which cancel if a body may expand freely (force
-    /// length).
+    /// Work of the temperature, and the larger of its two parts (force length); the parts cancel if a body may expand
+    /// freely.
     pub thermal_work: [f64; 2],
 }
 
 impl StepProblem<'_> {
     /// Internal variables at the end of an increment to displacements `u1` and temperatures T1, the dissipated energy,
     /// and the work of the temperature. If the temperature changes, the materials follow the change at once: their
-    /// variables are those of the end. The work of the temperature is the change of the potential of the elements at
-    /// constant displacements,
+    /// internal variables belong to the temperature of the end. The work of the temperature is the change of the
+    /// potential of the elements at constant displacements,
     ///
     /// ```text
     /// Phi(U1; T1) - Phi(U1; Tm) + Phi(U0; Tm) - W0                   energy-momentum form, Tm halfway

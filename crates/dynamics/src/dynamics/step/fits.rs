@@ -15,7 +15,8 @@ pub(crate) struct Fits<'m> {
 /// A contact that allows an overlap.
 struct Fit<'m> {
     load: &'m Load<Interference>,
-    /// Factor of the magnitude at every slave node: the overlap at the start of the analysis (length), or 1.
+    /// Factor at every slave node by which the magnitude of the fit is multiplied: the overlap at the start of the
+    /// analysis (length), or 1.
     nodes: Cow<'m, [f64]>,
 }
 
@@ -66,8 +67,7 @@ impl<'m> Fits<'m> {
         ways.fold(0.0, larger)
     }
 
-    /// Contacts with a fit, each with the largest overlap at the start of the analysis that it
-    /// presses out (length).
+    /// Contacts with a fit, each with the largest overlap at the start of the analysis that the fit removes (length).
     pub fn largest(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let shrinks = self.all.iter().filter(|fit| fit.load.at.is_shrink);
         shrinks.map(|fit| (fit.load.at.contact, largest(&fit.nodes)))

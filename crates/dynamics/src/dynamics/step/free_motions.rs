@@ -9,9 +9,9 @@ use crate::linear::{larger, largest};
 
 /// Factor eps of eq. (12.5), relative to the mean stiffness of the pins.
 const REGULAR: f64 = 1e-11;
-/// Stiffness, in units of E, up to which a motion counts as not resisted.
+/// Stiffness against a motion, in units of E of eq. (12.5), up to which the motion counts as not resisted.
 const UNRESISTED: f64 = 10.0;
-/// Force, relative to the other forces, up to which it is round-off.
+/// Force along a motion, relative to the other forces, up to which this force is round-off.
 const NO_FORCE: f64 = 1e-12;
 
 /// The places p of the far ends of the pins as unknowns. With pins of the stiffness a that end at
@@ -21,30 +21,29 @@ const NO_FORCE: f64 = 1e-12;
 /// dU = y + W B^T P + Z p,   f = a S^T (y + W B^T P) - S_p p,   S_p = a - a S^T Z    eq. (12.3)
 /// ```
 ///
-/// W is the inverse with the pins, Z = W (S a + N Z), y = d_p + W r, and f are the forces of the
-/// pins.
+/// Here W is the inverse with the pins, Z = W (S a + N Z), y = d_p + W r, and f are the forces of the pins.
 pub(crate) struct FreeMotions {
     /// The pinned dofs.
     pub dofs: Vec<usize>,
     /// Stiffness a of every pin (force/length).
     a: Vec<f64>,
-    /// Z as motions of all dofs, column by column (dimensionless).
+    /// The motions Z of all dofs for unit motions of the far ends, column by column (dimensionless).
     motions: Vec<Vec<f64>>,
-    /// The columns W S a, in the form of the work of forces at all dofs.
+    /// The columns W S a as motions of all dofs on which forces do work.
     works: Vec<Vec<f64>>,
-    /// S a + N Z (dof, force/length).
+    /// Forces S a + N Z per unit motion of the far ends (dof, force/length).
     loads: Vec<Vec<(usize, f64)>>,
     /// S_p (force/length).
     stiffness: DMatrix<f64>,
     /// Mean square motion of every body, as a quadratic form of the motions of its pins.
     mean_square: DMatrix<f64>,
-    /// P of eq. (12.11): the part of the motions of the pins that is held.
+    /// The projection P of eq. (12.11) on the part of the motions of the pins that is held.
     held: DMatrix<f64>,
     /// Round-off of forces at the pins.
     round_off: f64,
     /// Largest distance that nodes may move in a pass (length).
     reach: f64,
-    /// S^T y: motions of the pins without contact forces and with their far ends at p = 0.
+    /// Motions S^T y of the pins without contact forces and with their far ends at p = 0.
     pub alone: Vec<f64>,
     /// The answer of the last complementarity problem.
     answer: Option<Answer>,
@@ -53,7 +52,7 @@ pub(crate) struct FreeMotions {
 /// Answer of a complementarity problem.
 struct Answer {
     p: DVector<f64>,
-    /// Stiffness against p under the closed pairs, eq. (12.6).
+    /// Stiffness against motions p of the far ends under the closed pairs, eq. (12.6).
     under_contact: DMatrix<f64>,
     /// Factor of the mean square motion in E (force/length).
     regular: f64,
@@ -66,14 +65,14 @@ pub(crate) struct Loose {
     pub pins: DVector<f64>,
     /// Force along the motion that nothing balances at the start of the pass.
     pub force: f64,
-    /// Whether contact resists the motion practically not at all.
+    /// Whether contact gives the motion practically no resistance.
     pub is_unresisted: bool,
 }
 
 impl FreeMotions {
-    /// Free motions of pins with the stiffness `a` at some dofs, from Z, W S a and S a + N Z over all dofs. The
-    /// matrices are the mean square motion of the bodies, the stiffness of forces that are not balanced yet, and the
-    /// held part of the motions.
+    /// Free motions of pins with the stiffness `a` at some dofs, from the matrices Z, W S a and S a + N Z over all
+    /// dofs. The matrices are the mean square motion of the bodies, the stiffness of forces that are not balanced yet,
+    /// and the held part of the motions.
     pub fn new(
         (dofs, a): (Vec<usize>, Vec<f64>),
         [motions, works, loads]: [Vec<Vec<f64>>; 3],
@@ -105,8 +104,8 @@ impl FreeMotions {
         }
     }
 
-    /// The free unknowns of the complementarity problem of some constraints. For held motions the balance says that the
-    /// far ends of the pins stay in place:
+    /// The free unknowns of the complementarity problem of some constraints. For held motions the balance is replaced
+    /// by the condition that the far ends of the pins stay in place:
     ///
     /// ```text
     /// H f + P^T a P S^T dU = 0,   H = (1 - P)^T - P^T P    eq. (12.11)
@@ -144,8 +143,8 @@ impl FreeMotions {
         REGULAR * mean
     }
 
-    /// Stores the answer p of a problem. Motions that nothing resists, and that only the round-off of other forces
-    /// drives, are set to zero.
+    /// Stores the places p that a complementarity problem has given. Motions that nothing resists and that only the
+    /// round-off of other forces drives are set to zero.
     pub fn answer(&mut self, problem: &FrictionalLcp, solution: &FrictionalSolution) {
         self.answer = Some(Answer {
             p: solution.free.clone(),
@@ -175,13 +174,13 @@ impl FreeMotions {
         }
     }
 
-    /// Forces (S a + N Z) p that move the bodies (dof, force).
+    /// Forces (S a + N Z) p by which the far ends at the places p move the bodies (dof, force).
     pub fn forces(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let of_pins = self.p().into_iter().zip(&self.loads);
         of_pins.flat_map(|(p, load)| load.iter().map(move |&(dof, force)| (dof, p * force)))
     }
 
-    /// Forces of the pins along held motions, for a correction of all dofs: P^T f with f = a (S^T dU - p).
+    /// Forces P^T f of the pins along held motions, with f = a (S^T dU - p) for a correction dU of all dofs.
     pub fn carried(&self, du: &[f64]) -> Vec<f64> {
         let p = self.p();
         let force = |k: usize| self.a[k] * (du[self.dofs[k]] - p[k]);
@@ -189,9 +188,10 @@ impl FreeMotions {
         self.held.tr_mul(&force).as_slice().to_vec()
     }
 
-    /// Motions n with a mean square of 1 whose stiffness under the closed pairs of the last answer is at most that of E
-    /// or of facets (`of_facets`). The motions n are right singular vectors of S_e relative to the mean square motion,
-    /// since a sliding pair resists by its friction motions that do not change its gap.
+    /// Motions n with a mean square of 1 whose stiffness under the closed pairs of the last answer is at most the
+    /// stiffness E or the stiffness of facets (`of_facets`). The motions n are right singular vectors of the stiffness
+    /// S_e relative to the mean square motion, since a sliding pair resists, by friction, motions that do not change
+    /// its gap.
     pub fn loose(&self, of_facets: &dyn Fn(&[f64]) -> f64) -> Vec<Loose> {
         let Some(Answer {
             p,
@@ -239,7 +239,7 @@ impl FreeMotions {
         all
     }
 
-    /// Motion Z n of all dofs.
+    /// Motion Z n of all dofs for a motion n of the pins.
     pub fn motion(&self, n: &[f64]) -> Vec<f64> {
         let mut motion = vec![0.0; self.motions.first().map_or(0, Vec::len)];
         for (part, column) in n.iter().zip(&self.motions) {
@@ -249,7 +249,7 @@ impl FreeMotions {
         motion
     }
 
-    /// Forces at the pins that do the given work on the motion n of the pins and none on motions orthogonal to it.
+    /// Forces at the pins that do the given work on the motion n of the pins and no work on motions orthogonal to n.
     pub fn force_along(&self, Loose { pins, force, .. }: &Loose) -> Vec<f64> {
         let along = &self.mean_square * pins * *force;
         along.as_slice().to_vec()
@@ -262,12 +262,12 @@ impl FreeMotions {
             .map_or(Stability::default(), |answer| answer.stability)
     }
 
-    /// Whether the last answer moves a node farther than the reach.
+    /// Whether the last answer moves a node farther than a pass may move nodes.
     pub fn goes_too_far(&self) -> bool {
         largest(&self.motion(&self.p())) > self.reach
     }
 
-    /// Force along a motion up to which it is round-off, if the other forces have the given size.
+    /// Size up to which a force along a motion is round-off, if the other forces have the given size.
     pub fn none_beside(&self, others: f64) -> f64 {
         larger(NO_FORCE * others, self.round_off)
     }

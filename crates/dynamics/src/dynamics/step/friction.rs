@@ -13,7 +13,7 @@ const SOLVED_SLIP: f64 = 1e-9;
 /// Slip rate at the start of an increment, relative to the largest speed at the pair, up to which the pair is at rest.
 const RESTING: f64 = 1e-9;
 
-/// Data on which the coefficients of an iterate depend, other than its constraints.
+/// Data, besides the constraints, on which the coefficients of an iterate depend.
 #[derive(Clone, Copy)]
 pub(crate) struct BeforeIterate<'a> {
     /// Displacements U0 of the start.
@@ -22,7 +22,7 @@ pub(crate) struct BeforeIterate<'a> {
     pub interval: Interval,
     /// The pairs closed in the last solution.
     pub closed: &'a ClosedPairs,
-    /// Velocity V0 of the start, if there are velocities and the iterate is the first one of the passes.
+    /// Velocity V0 of the start, if the step has velocities and the iterate is the first of the passes.
     pub v0: Option<&'a [f64]>,
 }
 
@@ -45,7 +45,7 @@ impl BeforeIterate<'_> {
     }
 
     /// Normal force of every constraint in the last solution. If a slave node has left all its targets, its first
-    /// constraint has the forces that the node had there.
+    /// constraint gets the forces that the node had at these targets.
     fn normal_forces(&self, constraints: &[Constraint]) -> Vec<f64> {
         let mut forces: Vec<f64> = (constraints.iter())
             .map(|constraint| self.closed.force(constraint.key)[0])
@@ -70,7 +70,7 @@ pub(crate) struct Frictions<'m> {
     faces: Option<SlaveFaces>,
 }
 
-/// Friction of a contact.
+/// Friction of a contact in a step.
 struct FrictionOfContact<'m> {
     friction: &'m Friction,
     /// The former friction, which is replaced gradually in the step.
@@ -91,7 +91,7 @@ impl FrictionOfContact<'_> {
         self.all().any(Friction::depends_on_pressure)
     }
 
-    /// Coefficient at a slip rate (`None` at rest), under a pressure, at a time.
+    /// Coefficient of friction at a slip rate (`None` at rest), under a pressure, at a time.
     fn at(&self, rate: Option<f64>, pressure: f64, (time, model): (TimePoint, &Model)) -> f64 {
         match (self.from, rate) {
             (Some(from), _) => {
@@ -132,14 +132,14 @@ impl<'m> Frictions<'m> {
     }
 
     /// Sets the coefficients of the constraints of an iterate: at rest if the pair has not slipped in the last
-    /// solution, else at the slip rate of the increment. Both coefficients depend on the pressure of the available
+    /// solution, else at the slip rate of the increment. The coefficient depends on the pressure of the available
     /// forces on the slave node,
     ///
     /// ```text
     /// p = |N|/A,  N = sum Bn^T Pn    eq. (3.13)
     /// ```
     ///
-    /// A is the area of the node for N in the configuration of the start.
+    /// Here A is the area of the node for the normal force N, in the configuration of the start.
     pub fn give(&self, x: &[[f64; 2]], before: BeforeIterate, constraints: &mut [Constraint]) {
         let BeforeIterate { u0, interval, .. } = before;
         let normal = match self.faces {
@@ -160,10 +160,10 @@ impl<'m> Frictions<'m> {
     }
 
     /// The least and the largest coefficient that the law allows for every closed pair of a converged increment, under
-    /// the pressure of its forces and whatever coefficients the passes had. The two coefficients of a pair that slips
-    /// enclose, within round-off, that of its slip rate Bt d/dt; those of a pair that does not slip are 0 and at least
-    /// the one at rest. A slip within round-off counts as zero. The friction of the pair must be between mu Pn of the
-    /// two.
+    /// the pressure of its forces and whatever coefficients the passes had. For a pair that slips, the two coefficients
+    /// enclose the coefficient at its slip rate Bt d/dt, within round-off. For a pair that does not slip, the least
+    /// coefficient is 0, and the largest is at least the coefficient at rest. A slip within round-off counts as zero.
+    /// The friction of the pair must lie between mu Pn for the least and mu Pn for the largest coefficient.
     pub fn bounds<'c>(
         &self,
         x: &[[f64; 2]],
@@ -188,7 +188,8 @@ impl<'m> Frictions<'m> {
         pairs.map(of_pair).collect()
     }
 
-    /// Friction of every closed pair above the law, or below it if the pair slips (force), by [`Self::bounds`].
+    /// Amount (force) by which the friction of every closed pair is above the law, or below the law if the pair slips,
+    /// by [`Self::bounds`].
     pub fn outside<'c>(
         &self,
         x: &[[f64; 2]],
@@ -204,8 +205,8 @@ impl<'m> Frictions<'m> {
         pairs.zip(bounds).map(of_pair).collect()
     }
 
-    /// N of eq. (3.13) over the dofs of all nodes, from the forces Pn of constraints; empty if no friction depends on
-    /// pressure.
+    /// Nodal normal forces N of eq. (3.13) over all dofs, from the forces Pn of constraints; empty if no friction
+    /// depends on pressure.
     fn normal_forces<'c>(
         &self,
         nodes: usize,
@@ -219,8 +220,8 @@ impl<'m> Frictions<'m> {
         normal
     }
 
-    /// Pressure on the slave node of a constraint from the forces N at the nodes, eq. (3.13); 0 if its friction does
-    /// not depend on pressure.
+    /// Pressure on the slave node of a constraint from the forces N at the nodes, eq. (3.13); 0 if the friction of the
+    /// constraint does not depend on pressure.
     fn pressure(
         &self,
         constraint: &Constraint,

@@ -1,5 +1,5 @@
-//! Rigid motions of static steps that only the facets of the mesh resist; they are held where they
-//! are. See docs/theory/bodies.md, Neutral motions.
+//! Rigid motions of static steps that only the facets of the mesh resist; the bodies are held in place along these
+//! motions. See docs/theory/bodies.md, Neutral motions.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,7 +9,7 @@ use crate::contact::{ClosedPair, Constraint};
 use crate::dynamics::results::Unbalanced;
 use crate::linear::{larger, largest};
 
-/// Size of the part of a held motion along free motions from which on it counts as free.
+/// Size of the part of a held motion along free motions from which on the held motion counts as free.
 const ALONG: f64 = 0.7;
 
 /// Held motions of every body.
@@ -25,14 +25,14 @@ struct HeldBody {
     force: DVector<f64>,
 }
 
-/// A rigid motion that is held; those of a body are orthogonal and of size 1.
+/// A rigid motion that is held; the held motions of a body are orthogonal and of size 1.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 struct HeldDirection {
-    /// D: the components of the motion in the free rigid motions.
+    /// Components D of the held motion in the free rigid motions of the body.
     rigid: DVector<f64>,
-    /// Z_p D: motions of the pins.
+    /// Motions Z_p D of the pins in the held motion.
     motion: DVector<f64>,
-    /// Z_p^-T D: forces at the pins with the resultant D.
+    /// Forces Z_p^-T D at the pins, whose resultant is D.
     force: DVector<f64>,
 }
 
@@ -72,7 +72,7 @@ impl HeldMotions {
         self.0.is_empty()
     }
 
-    /// P of eq. (12.11) over all pins: the projection of their motions on the held part.
+    /// The projection P of eq. (12.11), over all pins, of their motions on the held part.
     pub fn projection(&self, pins: &Pins) -> DMatrix<f64> {
         let of_bodies = pins.of_bodies();
         let m = of_bodies.last().map_or(0, |own| own.end);
@@ -88,7 +88,7 @@ impl HeldMotions {
         all
     }
 
-    /// Holding forces at all pins.
+    /// Forces at all pins that hold the motions.
     pub fn forces(&self, pins: &Pins) -> Vec<f64> {
         let of_bodies = pins.of_bodies();
         let mut forces = DVector::zeros(of_bodies.last().map_or(0, |range| range.end));
@@ -102,7 +102,7 @@ impl HeldMotions {
         forces.as_slice().to_vec()
     }
 
-    /// Adds forces at all pins to the holding forces.
+    /// Adds forces at all pins to the forces that hold the motions.
     pub fn add_forces(&mut self, pins: &Pins, forces: &[f64]) {
         let of_bodies = pins.of_bodies();
         for held in &mut self.0 {
@@ -113,8 +113,8 @@ impl HeldMotions {
         }
     }
 
-    /// Turns the held motions with the surfaces at which the bodies lie, and releases those that are not free any more.
-    /// Returns whether any motion is released.
+    /// Turns the held motions with the surfaces at which the bodies lie, and releases motions that are not free any
+    /// more. Returns whether any motion is released.
     pub fn follow(
         &mut self,
         pins: &Pins,
@@ -194,7 +194,7 @@ impl HeldMotions {
         self.0.iter().map(part).fold(0.0, f64::max)
     }
 
-    /// Largest force that holds a body, relative to the normal forces on it.
+    /// Largest force that holds a body, relative to the normal forces on the body.
     pub fn part(
         &self,
         pins: &Pins,
@@ -206,7 +206,8 @@ impl HeldMotions {
         self.0.iter().map(part).fold(0.0, larger)
     }
 
-    /// The body with the largest holding force, with this force and the motion that the body would make without it.
+    /// The body with the largest holding force, with this force and the motion that the body would make without this
+    /// force.
     pub fn strongest(
         &self,
         pins: &Pins,
@@ -222,8 +223,8 @@ impl HeldMotions {
         pins.most_unbalanced(problem, u, &motion, &left)
     }
 
-    /// Stiffness against motions whose stability is not demanded, over the dofs of their pins: `a` of each pin for held
-    /// motions, and the stiffness that facets may have for free ones.
+    /// Stiffness against motions whose stability is not demanded, over the dofs of their pins: the stiffness `a` of the
+    /// pins against held motions, and the stiffness that facets may have against free motions.
     pub fn stiffness(
         &self,
         pins: &Pins,

@@ -7,7 +7,7 @@ use crate::linear::{LinearError, Rotation, Transformation};
 use crate::model::{Model, Step};
 
 /// Least eigenvalue of the matrix of hinge compliances, scaled to a unit diagonal, below which some hinges are
-/// redundant. The eigenvalues of light bodies between heavy ones are far above this bound.
+/// redundant. The eigenvalues of light bodies between heavy bodies are far above the bound.
 const INDEPENDENT: f64 = 1e-12;
 
 /// The rows of all hinges: gaps C u = u_a - u_b, eq. (11.8), first along x and then along y for
@@ -45,7 +45,7 @@ impl Hinges {
         self.rows.is_empty()
     }
 
-    /// Number of rows.
+    /// Number of rows of C.
     pub fn count(&self) -> usize {
         self.rows.len()
     }
@@ -67,7 +67,7 @@ impl Hinges {
         self.rows.iter().map(gap).collect()
     }
 
-    /// Adds C^T lambda to a force over all dofs.
+    /// Adds the hinge forces C^T lambda to a force over all dofs.
     pub fn add_forces(&self, lambda: &[f64], force: &mut [f64]) {
         let rows = self.rows.iter().zip(lambda);
         for (Row { dofs: [a, b], .. }, lambda) in rows.filter(|(row, _)| !row.is_held) {
@@ -76,15 +76,15 @@ impl Hinges {
         }
     }
 
-    /// The update by which solutions with a matrix keep the gaps closed, from its solver and T and R of its iterate:
+    /// The update by which solutions with a matrix keep the gaps of hinges closed, from the solver of the matrix and
+    /// the maps T and R of the iterate:
     ///
     /// ```text
     /// W = A^-1 - V S^-1 Y^T,  V = A^-1 T_m^T C^T,  Y = A^-1 T_1^T C^T,  S = C T_1 V      eq. (11.9)
     /// ```
     ///
     /// # Errors
-    /// Returns [`LinearError::Dependent`] with the number of a hinge that is redundant because of
-    /// others.
+    /// Returns [`LinearError::Dependent`] with the number of a hinge that other hinges make redundant.
     pub fn hold(
         &self,
         (map, rotation): (&Transformation, &Rotation),
@@ -114,7 +114,7 @@ impl Hinges {
         Ok(RankUpdate::new([v, y], inverse))
     }
 
-    /// S^-1, the inverse of the matrix of hinge compliances, if no row depends on the others.
+    /// The inverse S^-1 of the matrix of hinge compliances, if no row depends on the others.
     fn inverse(&self, s: DMatrix<f64>) -> Result<DMatrix<f64>, LinearError> {
         let m = s.nrows();
         let size: Vec<f64> = (0..m).map(|i| s[(i, i)].abs().sqrt()).collect();

@@ -1,14 +1,14 @@
 //! Balance equation of an increment, by the procedure of its step. The balance has the weights and configurations of
 //! the scheme SS22 of Zienkiewicz, Wood & Hine (1984), of the energy-momentum form of Simo & Tarnow (1992), or of the
-//! backward Euler rule, and tells whether anything depends on rates. See docs/theory/time.md.
+//! backward Euler rule. The scheme also tells whether anything depends on rates. See docs/theory/time.md.
 
 use crate::contact::RowForm;
 use crate::dynamics::results::State;
 use crate::elements::Motion;
 use crate::model::{Procedure, Scheme, Step};
 
-/// The single-step scheme SS22 with its weights, or the energy-momentum form of its mid-point rule. A static step is
-/// SS22 with both weights 1 and without rates; a quasi-static step adds the inertia of the backward Euler rule.
+/// The single-step scheme SS22 with its weights, or the energy-momentum form of the mid-point rule of SS22. A static
+/// step is SS22 with both weights 1 and without rates; a quasi-static step adds the inertia of the backward Euler rule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Integration {
     pub theta1: f64,
@@ -75,8 +75,8 @@ impl Integration {
         !self.has_rates || self.backward_euler
     }
 
-    /// Whether the rows of the impulses are those of the start, as in the energy-momentum form;
-    /// otherwise they are the rows of the end.
+    /// Whether impulses have the contact rows of the start, as in the energy-momentum form; otherwise they have the
+    /// rows of the end.
     pub fn impulses_at_start(&self) -> bool {
         self.energy_momentum
     }
@@ -109,7 +109,7 @@ impl Integration {
         }
     }
 
-    /// U_theta = U0 + theta2 d + (theta1 - theta2) dt V0+, d = U - U0, eq. (4.3).
+    /// Displacements U_theta = U0 + theta2 d + (theta1 - theta2) dt V0+ with d = U - U0, eq. (4.3).
     pub fn write_displacement(&self, [u0, d, v0p]: [&[f64]; 3], dt: f64, u_theta: &mut [f64]) {
         let lag = (self.theta1 - self.theta2) * dt;
         for (u_theta, ((u0, d), v0p)) in u_theta.iter_mut().zip(u0.iter().zip(d).zip(v0p)) {
@@ -118,7 +118,7 @@ impl Integration {
     }
 
     /// The motion at which internal force and tangent are evaluated: at U_theta, or in the energy-momentum form from U0
-    /// to U1; temperatures are between those of the start and of the end.
+    /// to U1; temperatures are interpolated between start and end.
     pub fn motion<'a>(
         &self,
         start: &'a State,

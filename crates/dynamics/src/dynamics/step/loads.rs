@@ -28,7 +28,7 @@ impl TimePoint {
     }
 
     /// Rate of an amplitude. Where the rate jumps, the result is the rate before the jump; at the start of a step it is
-    /// the rate after.
+    /// the rate after the jump.
     pub fn amplitude_rate(&self, model: &Model, index: usize) -> f64 {
         let amplitude = &model.amplitudes[index];
         let t = self.of(amplitude.time);
@@ -129,7 +129,7 @@ pub(crate) struct Loads<'m> {
 /// Nodal forces of a load with a magnitude of 1, by their dofs (force).
 type UnitForces = BTreeMap<usize, f64>;
 
-/// Unit forces of a load; subsequent loads with the same magnitude are added to them.
+/// Unit forces of a load; the next loads in the deck that have the same magnitude are added to these forces.
 fn unit_forces<'d, T>(
     all: &'d mut Vec<(Load<()>, UnitForces)>,
     &Load {
@@ -153,8 +153,8 @@ fn unit_forces<'d, T>(
     &mut all[place].1
 }
 
-/// Body forces int N^T f^B dOmega, f^B uniform in the element, on the nodes that carry the mass, and tractions
-/// int N^T f^S dGamma over the reference face.
+/// Body forces int N^T f^B dOmega on the nodes that carry the mass, with f^B uniform in the element, and tractions int
+/// N^T f^S dGamma over the reference face.
 fn dead_loads(
     model: &Model,
     step: &Step,
@@ -245,7 +245,7 @@ impl<'m> Loads<'m> {
         r
     }
 
-    /// Derivatives of the loads that follow the displacements `u`, at a time: of pressures and centrifugal forces.
+    /// Derivatives, at a time, of the loads that follow the displacements `u`: pressures and centrifugal forces.
     pub fn changes(&self, now: TimePoint, u: &[f64]) -> Vec<ForceChange> {
         let of_pressure = |load: &Load<Pressure>| {
             let p = now.magnitude(self.model, load);
@@ -357,7 +357,8 @@ impl<'m> Loads<'m> {
     }
 
     /// Derivative of the forces of the pressure p on a face. The forces of the pressure are polynomials of degree 2 at
-    /// most in the positions, so central differences of any step are exact; the step is the length of the face.
+    /// most in the positions, so central differences with any step length are exact; the step length here is the length
+    /// of the face.
     fn change_of_pressure(&self, load: &Load<Pressure>, p: f64, u: &[f64]) -> ForceChange {
         let side = load.at.face.of(&self.model.mesh);
         let thickness = self.elements.thickness(load.at.face.element);
@@ -398,7 +399,7 @@ pub(crate) struct StepPlace {
     pub start: f64,
     /// Duration of the step in the deck (time).
     pub period: f64,
-    /// Time by which a run goes on beyond the step; ramped loads keep the value of its end.
+    /// Time by which a run goes on beyond the step; ramped loads keep their values at the end of the step.
     pub extension: f64,
 }
 
@@ -408,7 +409,7 @@ impl StepPlace {
         self.period + self.extension
     }
 
-    /// The point in time at `step` after the start of the step.
+    /// The point in time when the time `step` has passed since the start of the step.
     pub fn time_point(&self, step: f64) -> TimePoint {
         TimePoint {
             step,

@@ -11,7 +11,7 @@ use crate::prepare::Redistribution;
 /// Nodal masses M 1: the mass that every node carries.
 pub(crate) struct Mass {
     nodal: NodalMatrix,
-    /// M 1: the mass that every node carries.
+    /// Nodal masses M 1: the mass that every node carries.
     pub shares: Vec<f64>,
 }
 
@@ -32,20 +32,20 @@ impl Mass {
         mass
     }
 
-    /// M v for a vector over all dofs.
+    /// The product M v for a vector v over all dofs.
     pub fn times(&self, v: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; v.len()];
         self.write_product(v, &mut product);
         product
     }
 
-    /// Writes M v for a vector over all dofs.
+    /// Writes the product M v for a vector v over all dofs.
     pub fn write_product(&self, v: &[f64], product: &mut [f64]) {
         self.nodal.write_product(v, product);
     }
 }
 
-/// M of a model with `nodes` nodes, over the nodes.
+/// Mass matrix M over the nodes of a model with `nodes` nodes.
 fn nodal_mass(
     (elements, bodies): (&Elements, &[TurningBody]),
     redistribution: &Redistribution,
@@ -66,9 +66,9 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// Masses of elements, point masses and masses of bodies that turn, over the nodes that carry them.
 pub(super) struct Masses {
-    /// Lists of nodes, in this order: one for every element (empty for a rigid one), spring and dashpot; for each
-    /// element with massless nodes those that carry it; those that carry the masses at nodes; centre and angle of every
-    /// body that turns.
+    /// Lists of nodes, in this order: for every element (empty for a rigid element), spring and dashpot its nodes; for
+    /// each element with massless nodes the nodes that carry its mass; for masses at nodes the nodes that carry these
+    /// masses; for every body that turns its centre and angle.
     nodes: Vec<Vec<usize>>,
     /// For every mass the number of its list, and its matrix, n x n column by column.
     of_elements: Vec<(usize, Vec<f64>)>,
@@ -125,8 +125,8 @@ impl Masses {
     }
 }
 
-/// P_e^T M_e P_e, eq. (2.17), for an element's mass `m` over its nodes `own`: the nodes with mass that carry it, and
-/// the matrix over them.
+/// The nodes with mass that carry an element's mass `m` over its nodes `own`, and the matrix P_e^T M_e P_e, eq. (2.17),
+/// over these nodes.
 fn carried(own: &[usize], m: &[f64], redistribution: &Redistribution) -> (Vec<usize>, Vec<f64>) {
     let row = |node: &usize| match redistribution.donors(*node) {
         Some(donors) => donors.to_vec(),
@@ -151,8 +151,8 @@ fn carried(own: &[usize], m: &[f64], redistribution: &Redistribution) -> (Vec<us
     (carriers, carried)
 }
 
-/// Mass matrix T^T M T over the unknowns of a step. The pattern of the mass matrix includes that of the elements, which
-/// come first in the assembly.
+/// Mass matrix T^T M T over the unknowns of a step. The pattern of the mass matrix includes the pattern of the
+/// elements, which come first in the assembly.
 pub(super) fn unknown_mass(masses: &Masses, unknowns: &Unknowns) -> Assembled {
     let of_node = |&node: &usize| [2 * node, 2 * node + 1];
     let of_list = |nodes: &Vec<usize>| nodes.iter().flat_map(of_node).collect();
@@ -162,8 +162,8 @@ pub(super) fn unknown_mass(masses: &Masses, unknowns: &Unknowns) -> Assembled {
     mass
 }
 
-/// Expands a mass over nodes, n x n, to both directions of their dofs, 2n x 2n; both are stored
-/// column by column.
+/// Expands a mass over nodes, n x n, to both directions of their dofs, 2n x 2n; both matrices are stored column by
+/// column.
 fn in_both_directions(m: &[f64], n: usize) -> Vec<f64> {
     let d = 2 * n;
     let mut both = vec![0.0; d * d];

@@ -1,8 +1,8 @@
 //! System matrices of a step with their factors and compliances at the contacts: the effective
 //! stiffness K* of the passes and the mass of the impulses. See docs/theory/time.md and docs/theory/impacts.md.
 //!
-//! A system matrix of a step, K* or M, whose work is measured: its solves, at once or in parts, and its complementarity
-//! problems. See docs/theory/time.md and docs/theory/complementarity.md.
+//! A system matrix of a step, K* or M, whose work is measured: its solves, in one go or in parts, and its
+//! complementarity problems. See docs/theory/time.md and docs/theory/complementarity.md.
 
 use std::collections::BTreeMap;
 
@@ -43,7 +43,7 @@ pub(crate) struct FactoredMatrix {
     pub space: DelassusSpace,
     /// Memory of the solves with the matrix.
     pub vectors: SolveVectors,
-    /// Difference between the inverse that keeps hinges closed and the inverse of the factors, if there are hinges.
+    /// Difference between the inverse that keeps hinges closed and the inverse from the factors; `None` without hinges.
     update: Option<RankUpdate>,
     /// Hinges that solutions keep closed.
     hinges: Hinges,
@@ -99,7 +99,7 @@ impl FactoredMatrix {
         }
     }
 
-    /// T at the iterate.
+    /// The map T at the iterate.
     pub fn map(&self) -> &Transformation {
         self.compliance.map()
     }
@@ -166,7 +166,7 @@ impl FactoredMatrix {
 const AS_RIGID: f64 = 1e3;
 const NEUTRAL: f64 = 1e-10;
 
-/// Largest number of iterations for N Z.
+/// Largest number of iterations for the product N Z.
 const MOST_CHANGES: usize = 20;
 const SMALL_CHANGE: f64 = 1e-14;
 
@@ -185,8 +185,8 @@ pub(crate) enum StiffnessForm {
 }
 
 impl StiffnessForm {
-    /// The forms to be tried, from the one with the fastest passes to the one that is never indefinite. With
-    /// `pairs_stiffen` only those forms that closed constraints stiffen are tried.
+    /// The forms to be tried, from the form with the fastest passes to the form that is never indefinite. With
+    /// `pairs_stiffen` only the forms that closed constraints stiffen are tried.
     pub fn forms(pairs_stiffen: bool) -> &'static [Self] {
         match pairs_stiffen {
             false => &[Self::Tangent, Self::Stiffened, Self::Positive],
@@ -194,7 +194,7 @@ impl StiffnessForm {
         }
     }
 
-    /// Part of the tangents of the elements in this form.
+    /// Part of the tangents of the elements in a form of the stiffness.
     fn part(self) -> TangentPart {
         match self {
             Self::Tangent | Self::Stiffened | Self::Stability => TangentPart::Whole,
@@ -208,7 +208,7 @@ pub(crate) struct ClosedConstraints<'a> {
     pub acting: Vec<(&'a Constraint, &'a ClosedPair)>,
     /// Configurations between which the closed constraints are linearised.
     pub at: Configurations<'a>,
-    /// Whether the constraints stiffen K* even if it is definite without them.
+    /// Whether the constraints stiffen K* even if K* is definite without these constraints.
     pub pairs_stiffen: bool,
     /// Derivatives of the loads that follow the iterate, in a static step.
     pub followers: &'a [ForceChange],
@@ -218,8 +218,8 @@ pub(crate) struct ClosedConstraints<'a> {
     pub held: &'a HeldMotions,
 }
 
-/// Diagonal entries for nodes without mass, equal to the largest diagonal entry of the mass: no impulse acts there, and
-/// with them M has factors.
+/// Diagonal entries for nodes without mass, equal to the largest diagonal entry of the mass: no impulse acts at these
+/// nodes, and the entries make M positive definite.
 fn diagonal_of_massless(problem: &StepProblem, mass: &Assembled) -> AddedBlocks {
     let most = mass.diagonal().fold(0.0, larger);
     let mut blocks = AddedBlocks::default();
@@ -236,13 +236,13 @@ fn masses(problem: &StepProblem) -> Masses {
     Masses::new((problem.elements, bodies), problem.redistribution)
 }
 
-/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), kept until it is assembled again, and
-/// the mass matrix. Both matrices are over the unknowns of a step: T^T K* T and T^T M T.
+/// The effective matrix K* = theta2 K + (2/dt²) M, eq. (4.6), which is kept until it is assembled again, and the mass
+/// matrix. Both matrices are over the unknowns of a step: T^T K* T and T^T M T.
 pub(crate) struct EffectiveStiffness {
     /// K*.
     pub k: FactoredMatrix,
-    /// M with a diagonal at nodes without mass. The mass matrix is factorised once: for the acceleration at the start,
-    /// or when an impulse first needs it.
+    /// The mass matrix M with a diagonal at nodes without mass. The mass matrix is factorised once: for the acceleration
+    /// at the start, or when an impulse first needs it.
     pub m: FactoredMatrix,
     /// Angles of the bodies in the configuration of K*.
     angles: BodyAngles,
@@ -291,14 +291,14 @@ impl EffectiveStiffness {
         })
     }
 
-    /// Sets the rows of T of bodies that turn in K* to those of the increment `d` from `u0`.
+    /// Sets the rows of T in K* for bodies that turn to the rows of the increment `d` from `u0`.
     pub fn write_rows(&mut self, problem: &StepProblem, increment: [&[f64]; 2]) {
         let turning = &problem.unknowns.turning;
         turning.write_rows(increment, self.k.map_mut());
     }
 
-    /// Sets the rows of T of bodies that turn in M to those at the start of an increment, and updates M where it
-    /// depends on them.
+    /// Sets the rows of T in M for bodies that turn to the rows at the start of an increment, and updates M where it
+    /// depends on these rows.
     pub fn start(&mut self, problem: &StepProblem, u0: &[f64]) {
         let turning = &problem.unknowns.turning;
         if turning.are_driven() {
@@ -322,8 +322,7 @@ impl EffectiveStiffness {
         self.dt
     }
 
-    /// Whether K* is factorised for increments of length `dt`, up to the relative difference
-    /// `near`.
+    /// Whether K* is factorised for increments of length `dt`, up to the relative difference `near` of the lengths.
     pub fn fits(&self, dt: f64, near: f64) -> bool {
         self.k.solver.is_factorized() && (self.dt - dt).abs() <= near * dt
     }
@@ -462,7 +461,7 @@ impl EffectiveStiffness {
     }
 }
 
-/// K* or M of a step, with the meter of its work.
+/// The matrix K* or M of a step, with the meter that measures its work.
 pub(crate) struct System<'a> {
     matrix: &'a mut FactoredMatrix,
     meter: &'a mut Meter,
@@ -474,7 +473,7 @@ impl<'a> System<'a> {
         System { matrix, meter }
     }
 
-    /// Whether the factors are those of the current matrix.
+    /// Whether the factors belong to the current matrix.
     pub fn is_factorized(&self) -> bool {
         self.matrix.solver.is_factorized()
     }
@@ -485,9 +484,10 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.factorization, || matrix.factorize())
     }
 
-    /// Makes the motions of pins with the stiffness `a` free unknowns of the complementarity problems; a part of them
-    /// is `held`. The bodies are at the positions `at`, with the forces `unbalanced` there. `skew` gives N x, the
-    /// changes of forces that the matrix omits, over all dofs. `reach` is the largest distance that nodes may move.
+    /// Makes the motions of pins with the stiffness `a` free unknowns of the complementarity problems; a part of these
+    /// motions is `held`. The bodies are at the positions `at`, where the forces `unbalanced` act. `skew` gives N x
+    /// over all dofs: the changes of forces, for a motion x, that the matrix omits. `reach` is the largest distance
+    /// that nodes may move.
     ///
     /// ```text
     /// Z = W (S a + N Z),   works W S a      eq. (12.3)
@@ -534,8 +534,8 @@ impl<'a> System<'a> {
         Ok(())
     }
 
-    /// T_m A^-T T_1^T f for the forces `f` over all dofs, the transposed response. The bodies of the matrix must not
-    /// have turned since it was factorised.
+    /// The transposed response T_m A^-T T_1^T f to the forces `f` over all dofs. The bodies of the matrix must not have
+    /// turned since it was factorised.
     fn respond_transposed(&mut self, f: &[f64]) -> Result<Vec<f64>, LinearError> {
         let map = self.matrix.map().clone();
         let b = map.restrict_derivatives(f);
@@ -556,7 +556,7 @@ impl<'a> System<'a> {
         &mut self.matrix.free
     }
 
-    /// Makes solutions keep the hinges closed, with T at the iterate.
+    /// Makes solutions keep the hinges closed, with the map T at the iterate.
     fn hold(&mut self) -> Result<(), LinearError> {
         let Self { matrix, meter } = self;
         let FactoredMatrix {
@@ -601,8 +601,8 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.solve, || matrix.solver.solve(b))
     }
 
-    /// R T A^-1 T^T R^T f for the forces `f` over all dofs, where A is the matrix and R the rotation of its bodies
-    /// (docs/numerics.md, Turned factors).
+    /// The response R T A^-1 T^T R^T f to the forces `f` over all dofs, where A is the matrix and R the rotation of its
+    /// bodies (docs/numerics.md, Turned factors).
     pub fn respond(&mut self, f: &[f64]) -> Result<Vec<f64>, LinearError> {
         self.respond_from(&vec![0.0; f.len()], f)
     }
@@ -643,7 +643,7 @@ impl<'a> System<'a> {
         meter.time(|t| &mut t.solve, || solver.begin(write))
     }
 
-    /// Writes A^-1 b for the present right-hand side b, at some unknowns, to `values`.
+    /// Writes the solution A^-1 b for the present right-hand side b, at some unknowns, to `values`.
     pub fn partial(&mut self, unknowns: &[usize], values: &mut Vec<f64>) {
         let Self { matrix, meter } = self;
         meter.time(|t| &mut t.solve, || matrix.solver.partial(unknowns, values));
@@ -691,7 +691,7 @@ impl<'a> System<'a> {
         std::mem::take(&mut self.matrix.vectors.response)
     }
 
-    /// Gives the memory of a response back for the next one.
+    /// Gives the memory of a response back for the next response.
     pub fn give_back(&mut self, response: ResponseVectors) {
         self.matrix.vectors.response = response;
     }
@@ -707,7 +707,7 @@ impl<'a> System<'a> {
         self.matrix.method
     }
 
-    /// T at the iterate.
+    /// The map T at the iterate.
     pub fn map(&self) -> &Transformation {
         self.matrix.map()
     }
@@ -728,7 +728,8 @@ impl<'a> System<'a> {
         self.matrix.compliance.scope_of(constraint)
     }
 
-    /// The complementarity problem of constraints of a scope with the given gaps and slips without forces.
+    /// The complementarity problem of constraints whose compliance is computed together (a scope), with the given gaps
+    /// and slips without forces.
     pub fn frictional_lcp(
         &mut self,
         scope: &ConstraintGroup,

@@ -45,7 +45,7 @@ impl Meter {
 }
 
 impl Timings {
-    /// Adds the times of a step to those of a run.
+    /// Adds the times of a step to the times of a run.
     pub(crate) fn add(&mut self, other: &Timings) {
         self.assembly += other.assembly;
         self.factorization += other.factorization;

@@ -9,7 +9,7 @@ use crate::contact::tolerances::CORNER_COSINE;
 use crate::model::Model;
 use crate::vectors::{cross, difference, dot, length};
 
-/// Largest mean slope of the normals of pairs along a motion that still counts as free.
+/// Largest mean slope that the normals of pairs may have along a motion that counts as free.
 const SLOPE: f64 = 0.25;
 
 /// The pairs of a body along its free rigid motions.
@@ -17,10 +17,10 @@ pub(super) struct Normals(pub Vec<Normal>);
 
 /// Normal of a pair.
 pub(super) struct Normal {
-    /// Row of the normal, Gn Z, and of the tangent, Gt Z.
+    /// Rows Gn Z and Gt Z: derivatives of the gap and of the slip along the free rigid motions Z.
     pub row: DVector<f64>,
     pub tangent: DVector<f64>,
-    /// |Gn Z0|², where Z0 are all rigid motions of the body, including those that supports hold.
+    /// The square |Gn Z0|², where Z0 are all rigid motions of the body, including motions that supports hold.
     pub size: f64,
     /// Largest sine of the angle between neighbouring segments at the nodes of the pair.
     pub kink: f64,
@@ -63,8 +63,8 @@ impl Normals {
             .collect()
     }
 
-    /// Force along a motion that facets may cause, since their normals differ from those of a smooth surface by up to
-    /// half the angle between neighbours.
+    /// Force along a motion that facets may cause, since their normals differ from the normals of a smooth surface by
+    /// up to half the angle between neighbouring segments.
     ///
     /// ```text
     /// f_e = sum_j Pn_j |Gt_j z| sin(beta_j)/2      eq. (12.12)
@@ -75,8 +75,8 @@ impl Normals {
         self.0.iter().map(of_pair).sum()
     }
 
-    /// Stiffness against a motion that facets may cause, since their normals change by the angle between neighbours
-    /// within a segment length.
+    /// Stiffness against a motion that facets may cause, since their normals change by the angle between neighbouring
+    /// segments within a segment length.
     ///
     /// ```text
     /// k_e = sum_j Pn_j (Gt_j z)² sin(beta_j)/l_j      eq. (12.13)

@@ -1,4 +1,4 @@
-//! Bodies, and parts of bodies with one kind of section: convergence is measured for each of them
+//! Bodies, and parts of bodies with one kind of section: convergence is measured for each body and part
 //! (docs/theory/time.md, Convergence).
 
 use std::collections::HashMap;
@@ -11,10 +11,9 @@ use crate::model::{Equation, Model};
 
 /// The bodies of a model and their parts, both numbered from 0.
 ///
-/// A body consists of all that elements and equations connect. Nodes of a body are in one part if
-/// the elements around them, and around the nodes of their equations, have the same sections. A
-/// light part next to a stiff or heavy one is therefore solved to its own scale, like a light body
-/// next to a heavy one.
+/// A body consists of all that elements and equations connect. Nodes of a body are in one part if the elements around
+/// these nodes, and around the nodes of their equations, have the same sections. A light part next to a stiff or heavy
+/// part is therefore solved to its own scale, like a light body next to a heavy body.
 pub(crate) struct Parts {
     /// Body of every node.
     body: Vec<usize>,
@@ -38,7 +37,7 @@ pub(crate) struct DofRun {
 }
 
 impl DofRun {
-    /// The runs of all nodes or unknowns with `values` values each; `groups` is the group of each.
+    /// The runs of all nodes or unknowns with `values` values each; `groups` gives the group of each node or unknown.
     fn all(groups: &[usize], values: usize) -> Vec<DofRun> {
         let mut end = 0;
         let run = |of_group: &[usize]| {
@@ -107,13 +106,12 @@ impl Parts {
         DofRun::all(&parts, 1)
     }
 
-    /// Largest absolute value of every part; `values` are over the unknowns, and `runs` are the
-    /// runs of the unknowns.
+    /// Largest absolute value in every part; `values` are over the unknowns, and `runs` are the runs of the unknowns.
     pub fn largest_of_unknowns(&self, runs: &[DofRun], values: &[f64]) -> PerBody {
         largest_of(runs, self.body_of.len(), values)
     }
 
-    /// Largest absolute value of some quantities in every part, each over all dofs.
+    /// Largest absolute value of some quantities, each given over all dofs, in every part.
     pub fn largest_of_all<'a>(&self, quantities: impl Iterator<Item = &'a [f64]>) -> PerBody {
         let mut most: PerBody = smallvec![0.0; self.body_of.len()];
         quantities.for_each(|values| enlarge(&mut most, &self.runs_of_parts, values));
@@ -125,8 +123,8 @@ impl Parts {
         largest_of(&self.runs_of_bodies, self.bodies, values)
     }
 
-    /// Values over all dofs, relative to the largest value of the increment `d` in the body of the dof; zero where that
-    /// is zero.
+    /// Values over all dofs, relative to the largest value of the increment `d` in the body of the dof; zero where this
+    /// largest value is zero.
     pub fn beside_increments(&self, d: &[f64], values: &[f64]) -> Vec<f64> {
         let units = self.largest_of_bodies(d);
         let beside = |(dof, value): (usize, &f64)| match units[self.body[dof / 2]] {
@@ -172,7 +170,7 @@ fn rigid_groups(model: &Model) -> impl Iterator<Item = Vec<usize>> + '_ {
     })
 }
 
-/// Sections of the elements around every node and the nodes of its equations, increasing.
+/// Numbers of the sections of the elements around every node and around the nodes of its equations, increasing.
 fn sections(model: &Model) -> Vec<Vec<usize>> {
     let nodes = model.dof_count() / 2;
     let mut cluster: Vec<usize> = (0..nodes).collect();
@@ -191,8 +189,8 @@ fn sections(model: &Model) -> Vec<Vec<usize>> {
     cluster.iter().map(of_node).collect()
 }
 
-/// First node of the group of every node after equations have united groups; `first` are the first
-/// nodes of the earlier groups.
+/// First node of the group of every node after equations have united groups; `first` gives the first node of the group
+/// before the union.
 fn united(mut first: Vec<usize>, equations: &[Equation]) -> Vec<usize> {
     for equation in equations {
         for &(dof, _) in &equation.terms {
@@ -225,8 +223,7 @@ fn largest_of(runs: &[DofRun], count: usize, values: &[f64]) -> PerBody {
     most
 }
 
-/// Raises the value of every group to the largest absolute value of the group in `values`, if that
-/// is larger.
+/// Raises the value of every group to the largest absolute value of the group in `values`, if this value is larger.
 fn enlarge(most: &mut [f64], runs: &[DofRun], values: &[f64]) {
     for DofRun { group, places } in runs {
         most[*group] = larger(most[*group], largest(&values[places.clone()]));

@@ -14,17 +14,17 @@ use crate::model::Equation;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-/// Largest motion of a node by which a pass moves a body rigidly, relative to the reach of the search, and the largest
-/// angle (rad).
+/// Largest motion of a node in a rigid motion of a body within a pass, relative to the reach of the search; also the
+/// largest angle of this motion (rad).
 const LARGEST_TRAVEL: f64 = 0.8;
 const LARGEST_ANGLE: f64 = 0.2;
-/// Eigenvalue, relative to the largest one possible, up to which a rigid motion is free.
+/// Eigenvalue of a rigid motion, relative to the largest possible eigenvalue, up to which the motion is free.
 const FREE: f64 = 1e-10;
-/// Sum of the terms of an equation in a rigid motion, relative to their size, up to which the
-/// equation allows the motion.
+/// Sum of the terms of an equation in a rigid motion, relative to the size of the terms, up to which the equation
+/// allows the motion.
 const AGREES: f64 = 1e-9;
 /// Least stiffness of the pins of a rigid body, relative to the largest force divided by the body's size, so that pins
-/// move little against the size of the body.
+/// move little compared with the size of the body.
 const STIFF: f64 = 1e3;
 /// Round-off of the resultant of many nodal forces, relative to the round-off of one nodal force.
 const RESULTANT: f64 = 10.0;
@@ -36,13 +36,14 @@ pub(crate) struct Pins {
     vertices: Vertices,
 }
 
-/// A body with rigid motions that no support holds, or a part of a body that equations join to others but leave free.
+/// A body with rigid motions that no support holds, or a part of a body that is joined to other parts by equations but
+/// can still move freely.
 struct PinnedBody {
     /// Number of the body to which the nodes belong.
     body: usize,
     /// Nodes of the body, and the centres of mass of the rigid bodies in it that turn, increasing.
     nodes: Vec<usize>,
-    /// Dofs of the angles of these rigid bodies, with their lengths.
+    /// Dofs of the angles of the rigid bodies that turn, with the lengths of these bodies.
     spins: Vec<Spin>,
     /// Whether the body is rigid, without elements that deform.
     is_rigid: bool,
@@ -64,12 +65,12 @@ pub(super) struct PinMotions {
 }
 
 impl PinMotions {
-    /// Z_p z: motions of the pins in a free motion z.
+    /// Motions Z_p z of the pins in a free motion z.
     pub fn motions(&self, z: &DVector<f64>) -> DVector<f64> {
         &self.seen * z
     }
 
-    /// Z_p^-T f: forces at the pins with the resultant f along the free motions.
+    /// Forces Z_p^-T f at the pins, with the resultant f along the free motions.
     pub fn forces(&self, f: &DVector<f64>) -> DVector<f64> {
         self.inverse.tr_mul(f)
     }
@@ -78,7 +79,8 @@ impl PinMotions {
 /// Dof L theta of an angle theta, and its length L.
 type Spin = (usize, f64);
 
-/// Two translations and the rotation about a pole, in units of a size, in one configuration.
+/// The rigid motions in one configuration: two translations, and the rotation about a pole in units of a size of the
+/// body.
 struct PinFrame<'a> {
     pole: [f64; 2],
     size: f64,
@@ -87,7 +89,8 @@ struct PinFrame<'a> {
 }
 
 impl PinFrame<'_> {
-    /// Motion of a dof in both translations and in the rotation that moves points at the distance of the size by 1.
+    /// Motion of a dof in both translations and in the rotation that moves points by 1 whose distance from the pole is
+    /// the size.
     fn row(&self, dof: usize) -> Vector3<f64> {
         if let Some((_, length)) = self.spins.iter().find(|spin| spin.0 == dof) {
             return Vector3::new(0.0, 0.0, length / self.size);
@@ -101,7 +104,7 @@ impl PinFrame<'_> {
 }
 
 impl Pins {
-    /// The pins of a static step; in a dynamic step there are none, since inertia holds all bodies.
+    /// The pins of a static step; a dynamic step has no pins, since inertia holds all bodies.
     pub fn new(problem: &StepProblem) -> Self {
         if problem.integration.has_rates {
             return Pins::default();
@@ -173,8 +176,8 @@ impl Pins {
     }
 
     /// Stiffness a of every pin in K*, whose diagonal is given: the mean K_ii over the unknowns of the body, eq.
-    /// (12.2). Springs alone give a rigid body its stiffness; its pins have at least the mean over all unknowns if
-    /// pairs touch it, and always at least 1e3 times `force` divided by its size.
+    /// (12.2). Only springs give a rigid body stiffness of its own. Its pins have at least the mean over all unknowns
+    /// if pairs touch the body, and always at least 1e3 times `force` divided by the size of the body.
     pub fn stiffnesses(
         &self,
         diagonal: &[f64],
@@ -210,7 +213,7 @@ impl Pins {
             .collect()
     }
 
-    /// Raises the stiffness of the unknowns of rigid bodies to that of their pins, `a`, if that is larger.
+    /// Raises the stiffness of the unknowns of rigid bodies to the stiffness `a` of their pins, if `a` is larger.
     pub fn stiffen_rigid(&self, (map, parts): (&Transformation, &Parts), a: &[f64], k: &mut [f64]) {
         let all = self.bodies.iter().zip(self.of_bodies());
         for (body, pins) in all.filter(|(body, _)| body.is_rigid) {
@@ -225,8 +228,8 @@ impl Pins {
         }
     }
 
-    /// Largest round-off of the forces at the pins of deformable bodies. Their round-off is ten times that of one nodal
-    /// force, 4 eps a |x|, where a is the stiffness of the pin in K* and x the size of the body.
+    /// Largest round-off of the forces at the pins of deformable bodies. The round-off at a pin is ten times the
+    /// round-off 4 eps a |x| of one nodal force, where a is the stiffness of the pin in K* and x the size of the body.
     pub fn round_off(&self, a: &[f64]) -> f64 {
         let all = self.bodies.iter().zip(self.of_bodies());
         all.filter(|(body, _)| !body.is_rigid)
@@ -264,8 +267,8 @@ impl Pins {
         all
     }
 
-    /// Stiffness against rotations from forces over all dofs that the iterate does not balance yet but will balance, if
-    /// they pull apart; it is over the motions of the pins at the positions `at`:
+    /// Stiffness against rotations from the forces (given over all dofs) that the iterate does not balance yet, if
+    /// these forces pull a body apart. The matrix is over the motions of the pins at the positions `at`:
     ///
     /// ```text
     /// Z_p^-T e max(sum_i x_i.r_i, 0) e^T Z_p^-1,   e the turn      eq. (12.14)
@@ -286,7 +289,7 @@ impl Pins {
     }
 
     /// The failure of bodies that are not in balance: it names the body with the largest of the forces `f` left at the
-    /// pins, which cause the correction `du` at the displacements `u`.
+    /// pins. The forces at the pins cause the correction `du` at the displacements `u`.
     pub fn unbalanceable(&self, problem: &StepProblem, u: &[f64], du: &[f64], f: &[f64]) -> Cause {
         match self.most_unbalanced(problem, u, du, f) {
             Some(unbalanced) => Cause::Unbalanceable(unbalanced),
@@ -309,8 +312,8 @@ impl Pins {
         most.map(|(body, pins)| Box::new(body.unbalanced(&at, du, &f[pins])))
     }
 
-    /// Motions of the pins of body number `body` among those with pins, in its free motions at the positions `at`;
-    /// `None` if the pins do not determine all free motions.
+    /// Motions of the pins in the free motions at the positions `at`, for the body number `body` among the bodies with
+    /// pins; `None` if the pins do not determine all free motions.
     pub(super) fn motions(
         &self,
         body: usize,
@@ -331,7 +334,7 @@ impl Pins {
         self.bodies.iter().map(of_body).collect()
     }
 
-    /// The pairs of body number `body` among those with pins, along its free motions at the positions `at`.
+    /// The pairs of the body number `body` among the bodies with pins, along its free motions at the positions `at`.
     pub(super) fn normals(
         &self,
         body: usize,
@@ -341,8 +344,8 @@ impl Pins {
         self.bodies[body].normals(&self.vertices, at, acting)
     }
 
-    /// Force along a motion Z n of all dofs that facets may cause, and their stiffness against it, over the pairs
-    /// without friction.
+    /// Force that facets may cause along a motion Z n of all dofs, and the stiffness of facets against this motion,
+    /// over the pairs without friction.
     ///
     /// ```text
     /// f_e = sum_j Pn_j |Gt_j Z n| sin(beta_j)/2,   k_e = sum_j Pn_j (Gt_j Z n)² sin(beta_j)/l_j      eq. (12.12), eq. (12.13)
@@ -365,7 +368,7 @@ impl Pins {
     }
 
     /// Turns the rigid part of a correction into a finite motion of bodies that turn, and limits it to the reach of the
-    /// contact search; returns whether it is limited. `at` are the positions of the iterate.
+    /// contact search; returns whether the motion has been limited. `at` are the positions of the iterate.
     pub fn make_finite(&self, at: &dyn Fn(usize) -> [f64; 2], reach: f64, du: &mut [f64]) -> bool {
         let mut is_limited = false;
         for body in &self.bodies {
@@ -479,8 +482,7 @@ impl PinnedBody {
         }
     }
 
-    /// Z_p, the motions of the pins in the free motions of the body; `None` if the pins do not
-    /// determine all free motions.
+    /// Motions Z_p of the pins in the free motions of the body; `None` if the pins do not determine all free motions.
     fn motions_of_pins(&self, frame: &PinFrame) -> Option<PinMotions> {
         let m = self.dofs.len();
         let seen =
@@ -490,7 +492,7 @@ impl PinnedBody {
         Some(PinMotions { seen, inverse })
     }
 
-    /// Z_p^-T e: rotation of the body for unit motions of its pins (1/length); `None` if the pins do not determine all
+    /// Rotation Z_p^-T e of the body for unit motions of its pins (1/length); `None` if the pins do not determine all
     /// its motions.
     fn turn(&self, at: &dyn Fn(usize) -> [f64; 2]) -> Option<DVector<f64>> {
         let frame = self.frame(pole(self.hold, &self.nodes, at), at);
@@ -499,8 +501,8 @@ impl PinnedBody {
         Some(inverse.tr_mul(&turn))
     }
 
-    /// sum_i x_i.r_i, with forces over all dofs at the nodes of the body and positions relative to
-    /// its pole (force length).
+    /// The sum of x_i.r_i over the nodes of the body, with forces r_i (given over all dofs) and positions x_i relative
+    /// to the pole (force length).
     fn virial(&self, force: &[f64], at: &dyn Fn(usize) -> [f64; 2]) -> f64 {
         let [px, py] = pole(self.hold, &self.nodes, at);
         let of_node = |&node: &usize| {
@@ -510,8 +512,8 @@ impl PinnedBody {
         self.nodes.iter().map(of_node).sum()
     }
 
-    /// E, the mean square motion as a quadratic form of the pins of the body; `None` if the pins do
-    /// not determine all its motions.
+    /// The mean square motion E as a quadratic form of the motions of the pins of the body; `None` if the pins do not
+    /// determine all its motions.
     fn mean_square(&self, at: &dyn Fn(usize) -> [f64; 2]) -> Option<DMatrix<f64>> {
         let frame = self.frame(pole(self.hold, &self.nodes, at), at);
         let inverse = self.motions_of_pins(&frame)?.inverse;
@@ -528,7 +530,7 @@ impl PinnedBody {
         Some(inverse.transpose() * free * inverse)
     }
 
-    /// Rigid part Z_p^-1 dU_p of a correction.
+    /// Rigid part Z_p^-1 dU_p of a correction, from the motions dU_p of the pins.
     fn motion(
         &self,
         at: &dyn Fn(usize) -> [f64; 2],
@@ -627,8 +629,8 @@ impl PinnedBody {
 }
 
 /// Dofs of nodes without elements that, through equations, move parts of a body relative to each other, as the
-/// tightening of a pre-tension section does. The terms of tightening dofs make an equation forbid rigid motions that
-/// the equation without them allows.
+/// tightening of a pre-tension section does. With the terms of tightening dofs an equation forbids rigid motions that
+/// it allows without these terms.
 fn tightening(
     equations: &[Equation],
     has_elements: &[bool],
@@ -682,7 +684,7 @@ fn pole(hold: Hold, nodes: &[usize], x: &dyn Fn(usize) -> [f64; 2]) -> [f64; 2] 
     sum.map(|sum| sum / nodes.len() as f64)
 }
 
-/// As many dofs as there are free motions, chosen by a pivoted QR factorisation of their rows in
+/// The dofs that are pinned, one for each free motion, chosen by a pivoted QR factorisation of the rows of the dofs in
 /// these motions.
 fn independent_dofs(
     dofs: Vec<usize>,

@@ -1,4 +1,4 @@
-//! Inverses that differ from the inverse of a factorised matrix by a few columns: those of matrices whose solutions
+//! Inverses that differ from the inverse of a factorised matrix by a few columns: inverses of matrices whose solutions
 //! keep hinges closed. See docs/theory/bodies.md, Hinges.
 
 use nalgebra::{DMatrix, DVector};
@@ -13,7 +13,7 @@ pub(crate) struct RankUpdate {
     columns: [UpdateColumns; 2],
     /// C.
     c: DMatrix<f64>,
-    /// Y^T b of the present solve.
+    /// Products Y^T b of the columns Y with the right-hand side b of the present solve.
     projected: Vec<f64>,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct UpdateColumns {
 }
 
 impl UpdateColumns {
-    /// Motions R T of columns over the unknowns, with T of the derivative rows.
+    /// Motions over the dofs of columns over the unknowns: R T times the columns, with T of the derivative rows.
     pub fn motions(
         of_unknowns: Vec<Vec<f64>>,
         (map, rotation): (&Transformation, &Rotation),
@@ -127,7 +127,7 @@ impl RankUpdate {
         (parts, motion)
     }
 
-    /// Changes A^-1 b at some unknowns into W b.
+    /// Changes the solution A^-1 b at some unknowns into the solution W b.
     pub fn correct(&self, unknowns: &[usize], values: &mut [f64]) {
         for (part, column) in self.parts().iter().zip(&self.columns[0].of_unknowns) {
             for (&at, value) in unknowns.iter().zip(values.iter_mut()) {
@@ -136,7 +136,7 @@ impl RankUpdate {
         }
     }
 
-    /// W^T b over all unknowns, from b and A^-1 b; A is symmetric.
+    /// The product W^T b over all unknowns, from b and A^-1 b; A is symmetric.
     pub fn transposed(&self, b: &[f64], solution: &[f64]) -> Vec<f64> {
         let [v, y] = self.columns.each_ref();
         let products = v.products(b);
@@ -144,12 +144,12 @@ impl RankUpdate {
         less(solution, y, parts.as_slice())
     }
 
-    /// W b over all unknowns, from A^-1 b.
+    /// The solution W b over all unknowns, from A^-1 b.
     pub fn corrected(&self, solution: &[f64]) -> Vec<f64> {
         less(solution, &self.columns[0], &self.parts())
     }
 
-    /// Changes G A^-1 B^T of some constraints into G W B^T.
+    /// Changes the Delassus matrix G A^-1 B^T of some constraints into G W B^T.
     pub fn change(&self, constraints: &[&Constraint], q: &mut DMatrix<f64>) {
         let (n, m) = (constraints.len(), self.c.nrows());
         type Row = fn(&Constraint, &[f64]) -> f64;

@@ -9,8 +9,9 @@ use crate::linear::larger;
 /// Round-off of a sum of some terms, relative to its largest term.
 pub(crate) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
-/// Largest displacement of every body and largest force of every part so far. A body that has carried a load keeps its
-/// round-off: small rests after loads, displacements and motions have gone back to zero must not become a scale.
+/// Largest displacement of every body and largest force of every part so far. A body that has carried a load keeps the
+/// round-off of this load. So a small remainder does not become the scale after loads, displacements and motions have
+/// gone back to zero.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Seen {
     /// Displacement of every body (length).
@@ -33,7 +34,7 @@ impl Seen {
     /// Transfers all values to or from an archive.
     ///
     /// # Errors
-    /// Returns an error if the archive is of another model.
+    /// The archive belongs to another model.
     pub fn transfer(&mut self, archive: &mut Archive) -> Result<(), ArchiveError> {
         archive.transfer_values(&mut self.displacement)?;
         archive.transfer_values(&mut self.force)
@@ -53,14 +54,14 @@ impl Seen {
         }
     }
 
-    /// Largest displacements so far, including those of an iterate.
+    /// Largest displacements so far, including the displacements of an iterate.
     pub fn displacements(&self, mut of_iterate: PerBody) -> PerBody {
         enlarge(&mut of_iterate, &self.displacement);
         of_iterate
     }
 
-    /// Part of the displacements of every body that the passes do not resolve, including those of an iterate: the
-    /// tolerance times the largest displacement so far, or the round-off of positions (length).
+    /// Part of the displacements of every body (also of an iterate) that the passes do not resolve: the tolerance times
+    /// the largest displacement so far, or the round-off of positions (length).
     pub fn unresolved(&self, problem: &StepProblem, u: &[f64]) -> PerBody {
         let tolerance = problem.settings.tolerance;
         let mut all: PerBody = (self.displacement.iter())

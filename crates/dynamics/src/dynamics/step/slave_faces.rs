@@ -1,4 +1,4 @@
-//! Faces of the slave surfaces, and the area of a slave node on them. See docs/theory/impacts.md, Ledger.
+//! Faces of the slave surfaces, and the area of a slave node on these faces. See docs/theory/impacts.md, Ledger.
 
 use std::collections::BTreeSet;
 
@@ -9,8 +9,8 @@ struct SlaveFace {
     node: usize,
     segment: Segment,
     thickness: Thickness,
-    /// Place along the segment, from the node (0) to the other end (1), at whose distance from the axis the node's part
-    /// lies.
+    /// Place along the segment, from the node (0) to the other end (1), where the distance from the axis is evaluated
+    /// for the node's part.
     place: f64,
     /// Part of the segment that belongs to the node.
     part: f64,
@@ -18,8 +18,8 @@ struct SlaveFace {
 
 /// The slave nodes of all contacts with their faces.
 pub(crate) struct SlaveFaces {
-    /// The value is 0 at slave nodes and at master nodes of contact from surface to surface, NaN at other nodes, `N`
-    /// entries.
+    /// Marks for the nodes, `N` entries: 0 at slave nodes and at master nodes of contact from surface to surface, NaN
+    /// at other nodes.
     pub start: Vec<f64>,
     /// The faces of all nodes, with increasing nodes.
     faces: Vec<SlaveFace>,
@@ -91,16 +91,17 @@ impl SlaveFaces {
         SlaveFaces { start, faces }
     }
 
-    /// Area of a node for a force N on it, at the given positions of nodes.
+    /// Area of a node for a force N on the node, at the given positions of nodes.
     ///
     /// ```text
     /// A = sum over its segments max(-n.N/|N|, 0) t l w    eq. (9.8)
     /// ```
     ///
-    /// n, l and t are the outward normal, current length and thickness of a segment, and w is the node's part of it:
-    /// 1/2, or on a side with a mid-side node 1/3 at a corner and 2/3 at the mid-side node. The area is such that the
-    /// forces of a uniform pressure give back this pressure. In a body of revolution t is 2 pi r, evaluated at a third
-    /// of the segment from the node, eq. (2.35); on a side with a mid-side node it is evaluated at the node itself.
+    /// Here n, l and t are the outward normal, current length and thickness of a segment, and w is the node's part of
+    /// the segment: 1/2, or on a side with a mid-side node 1/3 at a corner and 2/3 at the mid-side node. The area is
+    /// defined so that the nodal forces of a uniform pressure give back this pressure. In a body of revolution the
+    /// thickness t is 2 pi r, evaluated at a third of the segment from the node, eq. (2.35). On a side with a mid-side
+    /// node the thickness is evaluated at the node itself.
     pub fn area(&self, node: usize, force: [f64; 2], at: impl Fn(usize) -> [f64; 2]) -> f64 {
         let size = force[0].hypot(force[1]);
         // n l = (e_y, -e_x): on the right of the direction from a to b

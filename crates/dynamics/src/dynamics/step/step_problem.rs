@@ -31,7 +31,7 @@ use crate::vectors::distance;
 /// The equation of motion of a step.
 pub(crate) struct StepProblem<'m> {
     pub model: &'m Model,
-    /// Reference coordinates of the nodes, followed by those of the bodies that turn.
+    /// Reference coordinates of the nodes, followed by the coordinates of the nodes of bodies that turn.
     pub coordinates: &'m [[f64; 2]],
     pub elements: &'m Elements,
     pub mass: &'m Mass,
@@ -54,8 +54,8 @@ pub(crate) struct StepProblem<'m> {
 pub(crate) struct StartVelocity<'a> {
     /// The velocity is V0+, or V0 if the impulses are given separately.
     pub v0p: Cow<'a, [f64]>,
-    /// Impulses J = M (V0+ - V0) that the velocity does not contain, over all dofs; empty if it
-    /// contains them.
+    /// Impulses J = M (V0+ - V0) that the velocity does not contain, over all dofs; empty if the velocity contains the
+    /// impulses.
     pub impulse: &'a [f64],
 }
 
@@ -84,7 +84,7 @@ pub(crate) struct Equilibrium {
 }
 
 impl Equilibrium {
-    /// U_theta and the temperatures of the nodes in it.
+    /// Displacements U_theta and the temperatures of the nodes with them.
     pub fn place(&self) -> [&[f64]; 2] {
         [&self.u_theta, &self.temperature]
     }
@@ -170,8 +170,8 @@ impl StepProblem<'_> {
         self.integration.has_rates && self.elements.has_damping()
     }
 
-    /// Whether the step treats the velocity of landing nodes: it has rates and does not use the
-    /// backward Euler rule.
+    /// Whether the step treats the velocity of landing nodes: it does so if it has rates and does not use the backward
+    /// Euler rule.
     fn has_impacts(&self) -> bool {
         self.integration.has_rates && !self.integration.backward_euler
     }
@@ -191,7 +191,7 @@ impl StepProblem<'_> {
         self.has_impacts() && self.settings.landing == LandingRule::Return
     }
 
-    /// V <- P V: nodes without mass follow their donors, except where they are prescribed.
+    /// Replaces the velocities V by P V: nodes without mass follow their donors, except where they are prescribed.
     pub fn follow_donors(&self, v: &mut [f64]) {
         self.redistribution
             .follow(v, |dof| self.unknowns.depends(dof));
@@ -214,7 +214,7 @@ impl StepProblem<'_> {
         Positions::new(&self.model.mesh.coordinates, u)
     }
 
-    /// Cause of the failure of a factorisation or solve.
+    /// Cause of the failure of a factorisation or of a solve.
     pub fn unsolvable(&self, error: LinearError) -> Cause {
         match error {
             LinearError::NotPositiveDefinite { unknown, .. } => Cause::Indefinite {
@@ -244,7 +244,8 @@ impl StepProblem<'_> {
     }
 
     /// Checks that no element is turned inside out at the end of an increment. The passes detect inverted elements
-    /// themselves in the energy-momentum form, and if both weights are 1; in other schemes they see only U_theta.
+    /// themselves in the energy-momentum form, and if both weights are 1; in other schemes the passes evaluate only
+    /// U_theta.
     ///
     /// # Errors
     /// Returns [`Cause::Inverted`] with the first element that is turned inside out.
@@ -262,8 +263,8 @@ impl StepProblem<'_> {
         Ok(())
     }
 
-    /// Writes the constraints of pairs between the displacements `u0` and `u` of an increment; there are none between
-    /// rigid surfaces.
+    /// Writes the constraints of pairs between the displacements `u0` and `u` of an increment; there are no constraints
+    /// between rigid surfaces.
     pub fn constraints(
         &self,
         pairs: &[PairTarget],
@@ -307,7 +308,7 @@ impl StepProblem<'_> {
     }
 
     /// Writes load and internal force of the iterate U = U0 + d. Load and internal force depend on V0+ only if U_theta
-    /// does.
+    /// depends on V0+.
     fn load_and_internal_force(
         &self,
         start: &State,
@@ -414,7 +415,7 @@ pub(crate) fn check_finite(quantities: &[(&'static str, &Vec<f64>)]) -> Result<(
 }
 
 impl State {
-    /// Motion to the displacements of the state, with its internal variables and temperatures.
+    /// Motion to the displacements of a state, with the internal variables and temperatures of this state.
     pub fn motion(&self) -> Motion<'_> {
         Motion::at(&self.u, &self.internal).heated(&self.temperature)
     }
@@ -432,13 +433,13 @@ impl State {
     }
 }
 
-/// Writes sum = a + b.
+/// Writes the sum a + b.
 pub(crate) fn write_sum(a: &[f64], b: &[f64], sum: &mut Vec<f64>) {
     sum.clear();
     sum.extend(a.iter().zip(b).map(|(a, b)| a + b));
 }
 
-/// Writes difference = a - b.
+/// Writes the difference a - b.
 pub(crate) fn write_difference(a: &[f64], b: &[f64], difference: &mut Vec<f64>) {
     difference.clear();
     difference.extend(a.iter().zip(b).map(|(a, b)| a - b));
@@ -459,21 +460,21 @@ pub(crate) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
 pub(crate) struct Discretization<'m> {
     pub model: &'m Model,
     contacts: &'m [ContactSurfaces],
-    /// For each set of contacts that some steps have removed: their indices, and the surfaces of all contacts, of which
-    /// the removed ones have no nodes and segments.
+    /// For each set of contacts that some steps have removed: their indices, and the surfaces of all contacts, where
+    /// the removed contacts have no nodes and no segments.
     remaining: Vec<(&'m [usize], Vec<ContactSurfaces>)>,
     pub elements: Elements,
     pub mass: Mass,
     pub redistribution: &'m Redistribution,
     pub parts: Parts,
     pub turning: Vec<TurningBody>,
-    /// Reference coordinates of the nodes, followed by those of the bodies that turn.
+    /// Reference coordinates of the nodes, followed by the coordinates of the nodes of bodies that turn.
     pub coordinates: Vec<[f64; 2]>,
     /// Overlaps of slave nodes at the start, for contacts with shrink fits (length).
     pub overlaps: &'m [Vec<f64>],
 }
 
-/// The contacts in the steps that have removed some.
+/// The contacts in the steps that have removed contacts.
 fn remaining(prepared: &PreparedModel) -> Vec<(&[usize], Vec<ContactSurfaces>)> {
     let mut all: Vec<(&[usize], Vec<ContactSurfaces>)> = Vec::new();
     for step in &prepared.model.steps {
@@ -500,7 +501,7 @@ impl<'m> Discretization<'m> {
         found.map_or(self.contacts, |(_, contacts)| contacts)
     }
 
-    /// Whether there are dofs other than those of the nodes.
+    /// Whether there are other dofs than the dofs of the nodes.
     pub fn has_more_dofs(&self) -> bool {
         !self.turning.is_empty()
     }

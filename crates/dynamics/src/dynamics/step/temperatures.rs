@@ -33,7 +33,8 @@ impl<'m> Temperatures<'m> {
         all
     }
 
-    /// Writes (1 - theta1) T0 + theta1 T1, at which an increment is balanced; T0 are the temperatures at its start.
+    /// Writes the temperatures (1 - theta1) T0 + theta1 T1 at which an increment is balanced; T0 and T1 are the
+    /// temperatures at the start and at the end of the increment.
     pub fn write_weighted(
         &self,
         theta1: f64,

@@ -17,7 +17,7 @@ pub struct TurningBody {
     /// Dof of the angle: the displacement there is L theta, the velocity L omega, the increment s =
     /// L c.
     pub spin: usize,
-    /// L, the largest arm from the reference node.
+    /// Length L of the body: the largest arm from the reference node.
     pub length: f64,
     /// Mass.
     pub mass: f64,
@@ -32,12 +32,12 @@ pub struct TurningBody {
     to_centre: [f64; 2],
 }
 
-/// J r: the vector r turned by a right angle to the left.
+/// The vector J r: r turned by a right angle to the left.
 fn turned([x, y]: [f64; 2]) -> [f64; 2] {
     [-y, x]
 }
 
-/// R r: the vector r rotated by an angle, given by its sine and cosine.
+/// The vector R r: r rotated by an angle, which is given by its sine and cosine.
 fn rotated((sin, cos): (f64, f64), [x, y]: [f64; 2]) -> [f64; 2] {
     [cos * x - sin * y, sin * x + cos * y]
 }
@@ -175,11 +175,11 @@ pub fn rigid_inertia(model: &Model) -> Vec<[f64; 2]> {
 /// The rigid bodies in a step.
 pub(crate) struct Turning<'m> {
     pub bodies: &'m [TurningBody],
-    /// The pole of every body: its reference node if that is held, else its centre of mass.
+    /// The pole of every body: its reference node if this node is held, else its centre of mass.
     poles: Vec<usize>,
     /// Whether both translations and the angle of a body are prescribed.
     driven: Vec<bool>,
-    /// For every node the rigid body that moves it, if any.
+    /// For every node the rigid body that moves the node, if any.
     body_of: Vec<Option<usize>>,
     /// Whether forces act at the end of an increment, as in a static step.
     acts_at_end: bool,
@@ -222,7 +222,7 @@ impl<'m> Turning<'m> {
         self.driven.iter().all(|driven| *driven)
     }
 
-    /// Length L of the body whose angle is this dof; the force on the dof is a moment divided by L.
+    /// Length L of the body whose angle is the given dof; the force on the dof is a moment divided by L.
     pub fn length_of(&self, dof: usize) -> Option<f64> {
         let body = self.bodies.iter().find(|body| body.spin == dof);
         body.map(|body| body.length)
@@ -269,7 +269,7 @@ impl<'m> Turning<'m> {
         all.filter(|(_, driven)| **driven).map(|(body, _)| body)
     }
 
-    /// Dofs that follow the pole and the angle of their body: the dof itself, the dof of the pole, and that of the
+    /// Dofs that follow the pole and the angle of their body: the dof itself, the dof of the pole, and the dof of the
     /// angle.
     pub fn followers(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         self.with_poles().flat_map(|(body, pole)| {
@@ -299,7 +299,7 @@ impl<'m> Turning<'m> {
     /// force rows  (f, r_m x f),   derivative rows  (f, (r_1 x f)/(1 + c²/4))      eq. (11.3)
     /// ```
     ///
-    /// In a static step forces act at the end, so their rows are (f, r_1 x f).
+    /// In a static step forces f act at the end, so they hand (f, r_1 x f) over to pole and angle.
     pub fn write_rows(&self, [u0, d]: [&[f64]; 2], map: &mut Transformation) {
         for (body, pole) in self.with_poles() {
             if map.row(body.spin).is_empty() {
@@ -333,7 +333,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Sets the displacements of the angles to those after the increment `d` from `u0`: theta = theta_0 + 2 atan(c/2).
+    /// Sets the displacements of the angles to the values after the increment `d` from `u0`: theta = theta_0 + 2
+    /// atan(c/2).
     pub fn turn(&self, [u0, d]: [&[f64]; 2], u: &mut [f64]) {
         for body in self.bodies {
             let c = d[body.spin] / body.length;
@@ -341,7 +342,7 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Corrects displacements `u` of the angles that contain a part of the increment s = L c, so that they contain this
+    /// Corrects displacements `u` of the angles that contain a part of the increment s = L c, so that `u` contains this
     /// part of the difference L (theta_1 - theta_0).
     pub fn correct_angles(&self, d: &[f64], part: f64, u: &mut [f64]) {
         for body in self.bodies {
@@ -368,8 +369,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Changes increments s = L c of the angles from the iterate `u` into the continuation of the increment from `u0`
-    /// to `u` that leads to the same angles:
+    /// Changes the increments s = L c of the angles that start from the iterate `u` into increments that continue the
+    /// increment from `u0` to `u` and lead to the same angles:
     ///
     /// ```text
     /// tan(a + b) - tan a = tan b (1 + tan² a)/(1 - tan a tan b)
@@ -384,7 +385,7 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Sets the displacements of all nodes of the bodies to those of the poles and angles.
+    /// Sets the displacements of all nodes of the bodies to the motion of the poles and angles.
     pub fn place(&self, u: &mut [f64]) {
         for (body, pole) in self.with_poles() {
             let (of_pole, turn) = ([u[2 * pole], u[2 * pole + 1]], body.angle(u).sin_cos());
@@ -396,9 +397,9 @@ impl<'m> Turning<'m> {
     }
 
     /// Sets the velocities of all nodes of the bodies to the motion of the centre of mass and the angle; `u` are the
-    /// displacements. For bodies that are driven or have no mass the velocities are those of the motion of the
-    /// reference node and the angle. Prescribed dofs keep their velocities, and so do nodes with mass of deformable
-    /// elements in a body that is not driven.
+    /// displacements. For bodies that are driven or have no mass the velocities follow from the motion of the reference
+    /// node and the angle. Prescribed dofs keep their velocities, and so do nodes with mass of deformable elements in a
+    /// body that is not driven.
     pub fn move_with(&self, u: &[f64], v: &mut [f64], is_prescribed: impl Fn(usize) -> bool) {
         for (body, &driven) in self.bodies.iter().zip(&self.driven) {
             let carrier = match driven || body.mass == 0.0 {
@@ -420,7 +421,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Sets the velocities of the nodes of all bodies to those of the pole and the angle; `u` are the displacements.
+    /// Sets the velocities of the nodes of all bodies to the motion of the pole and the angle; `u` are the
+    /// displacements.
     pub fn move_with_poles(&self, u: &[f64], v: &mut [f64]) {
         for (body, pole) in self.with_poles() {
             let (omega, own) = (v[body.spin] / body.length, [v[2 * pole], v[2 * pole + 1]]);
@@ -431,7 +433,7 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Writes the increment of free poles and angles if they go on with the velocities `v`.
+    /// Writes the increment of free poles and angles that go on with the velocities `v`.
     pub fn predict(
         &self,
         v: &[f64],
@@ -444,8 +446,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Sets the accelerations of the nodes of driven bodies to (V1 - V0)/dt in an increment `d` from `u0`; in `a` the
-    /// reference nodes and angles must have theirs already.
+    /// Sets the accelerations of the nodes of driven bodies to (V1 - V0)/dt in an increment `d` from `u0`. The list `a`
+    /// must already hold the accelerations of the reference nodes and angles.
     pub fn drive(&self, [u0, d]: [&[f64]; 2], v0: &[f64], dt: f64, a: &mut [f64]) {
         for body in self.driven() {
             let reference = 2 * body.reference;
@@ -504,8 +506,8 @@ impl<'m> Turning<'m> {
         }
     }
 
-    /// Hands forces at the nodes of every body over to its pole and angle, where they do the same work in the increment
-    /// `d` to the displacements `u1`, or act at its end. The forces of driven bodies stay at the nodes if
+    /// Hands forces at the nodes of every body over to its pole and angle, where the forces do the same work in the
+    /// increment `d` to the displacements `u1`, or act at its end. The forces of driven bodies stay at the nodes if
     /// `keeps_driven`.
     pub fn hand_over(&self, [u1, d]: [&[f64]; 2], keeps_driven: bool, force: &mut [f64]) {
         let all = self.with_poles().zip(&self.driven);

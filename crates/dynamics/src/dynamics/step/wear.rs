@@ -5,16 +5,15 @@ use serde::{Deserialize, Serialize};
 
 /// Number of increments over which the mean number of passes of new factors is measured.
 const NEW: u32 = 5;
-/// Part of the least mean number of passes by which passes may exceed it.
+/// Excess of the number of passes over its least mean that is allowed, as a part of this mean.
 const SLACK: f64 = 0.05;
 /// Cost of a factorisation, including the compliance of the contacts, in passes.
 const COST: f64 = 10.0;
-/// Part by which new factors must reduce the passes to have paid.
+/// Part by which new factors must reduce the number of passes to have paid their cost.
 const GAIN: f64 = 0.1;
 /// Weight of the last number of passes in the running mean.
 const LATEST: f64 = 0.2;
-/// Factor by which the number of excess passes that pays for the next factorisation grows after one
-/// that has not paid.
+/// Factor by which [`Wear::bound`] grows after factors on trial that have not paid.
 const RARER: f64 = 4.0;
 /// Largest multiple of the cost of a factorisation that excess passes must reach.
 const MOST: f64 = 256.0;
@@ -24,23 +23,25 @@ const MOST: f64 = 256.0;
 pub(crate) enum FactoredState {
     /// The state of the iterate.
     Iterate,
-    /// The bodies without displacements, and then turned.
+    /// The state of the bodies without displacements, whose factors are then turned with the bodies.
     Unstrained,
 }
 
 /// Passes of the increments with the present factors.
 ///
-/// The choice between old and new factors of K* is that between renting and buying. Every pass beyond the number with
-/// new factors is rent; when the rent reaches the cost of a factorisation, K* is factorised. If passes grow evenly with
-/// the age of the factors, the age at which the rent reaches this cost is the best one. New factors are on trial: if
-/// strains change in the next increments, they can be worse than those of the unstrained bodies.
+/// The choice between old and new factors of K* is a choice between renting and buying. Every pass beyond the number of
+/// passes with new factors is rent; when the rent reaches the cost of a factorisation, K* is factorised. If passes grow
+/// evenly with the age of the factors, the best age for new factors is the age at which the rent reaches the cost of a
+/// factorisation. New factors are on trial: if strains change in the next increments, these factors can be worse than
+/// the factors of the unstrained bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Wear {
     /// Number of increments since the last factorisation.
     increments: u32,
     /// Mean number of passes in the first increments since the last factorisation.
     new: f64,
-    /// Least mean of this kind since the start of the step.
+    /// Least value, since the start of the step, of the mean number of passes in the first increments after a
+    /// factorisation.
     least: f64,
     /// Running mean of the number of passes.
     latest: f64,
@@ -75,8 +76,8 @@ impl Wear {
         self.has_failed || self.excess > self.bound * COST
     }
 
-    /// Notes that K* is factorised for other increments, or for one pass; returns the state for
-    /// which it is made.
+    /// Notes that K* is factorised for increments of another length, or for one pass; returns the state for which K* is
+    /// factorised.
     pub fn begin(&mut self) -> FactoredState {
         *self = Wear {
             bound: self.bound,

@@ -68,7 +68,7 @@ impl<'m> Workspace<'m> {
     }
 
     /// Makes the motions of the pins at the displacements `u` free unknowns of the complementarity problems;
-    /// `unbalanced` are the forces there, and `skew` gives N x, the changes of forces that K* omits.
+    /// `unbalanced` are the forces there, and `skew` gives N x: the changes of forces, for a motion x, that K* omits.
     pub fn free_pins(
         &mut self,
         problem: &StepProblem,
@@ -105,11 +105,10 @@ impl<'m> Workspace<'m> {
     }
 
     /// Assembles and factorises K* for increments of length `dt`, in the configuration of a motion and with the given
-    /// closed constraints. The factorised form is the first one that is positive definite.
+    /// closed constraints. The first positive definite form of K* is factorised.
     ///
     /// # Errors
-    /// Returns the error of the last form, or the first error other than a matrix that is not
-    /// positive definite.
+    /// Returns the error of the last form, or the first error that is not an indefinite matrix.
     pub fn factorize(
         &mut self,
         problem: &StepProblem,
@@ -149,7 +148,7 @@ impl<'m> Workspace<'m> {
     }
 
     /// Checks that an equilibrium is stable. The check does nothing if the last factors belong to a state near the
-    /// equilibrium, were not stiffened by closed pairs, and the last complementarity problem with free pins was stable.
+    /// equilibrium without stiffening by closed pairs, and the last complementarity problem with free pins was stable.
     ///
     /// # Errors
     /// Returns an error if K* is not positive definite.
@@ -204,8 +203,8 @@ impl<'m> Workspace<'m> {
         meter.time(|t| &mut t.solve, || stiffness.turn(problem, motion));
     }
 
-    /// (K + Cd/(theta2 dt)) x in the configuration of a motion, where K is the tangent, Cd the damping matrix and dt
-    /// the increment of K*.
+    /// The product (K + Cd/(theta2 dt)) x in the configuration of a motion, where K is the tangent, Cd the damping
+    /// matrix and dt the increment of K*.
     pub fn tangent_product(
         &mut self,
         problem: &StepProblem,
@@ -226,8 +225,8 @@ impl<'m> Workspace<'m> {
     }
 
     /// Writes the constraints of the chosen slave nodes between the displacements `u0` and `u` of an increment.
-    /// `before` are the constraints of the last pass, and `closed_at_start` the pairs closed at the start. With `kept`,
-    /// slave nodes keep their targets up to this overrun beyond the ends (segment lengths).
+    /// `before` are the constraints of the last pass, and `closed_at_start` the pairs closed at the start. Slave nodes
+    /// keep their targets up to the overrun `kept` beyond the ends (segment lengths).
     pub fn constraints(
         &mut self,
         problem: &StepProblem,
@@ -285,7 +284,7 @@ impl<'m> Workspace<'m> {
     /// ```
     ///
     /// # Errors
-    /// Returns [`LinearError::Dependent`] with a hinge that is redundant because of others.
+    /// Returns [`LinearError::Dependent`] with a hinge that other hinges make redundant.
     pub fn start_hinges(
         &mut self,
         problem: &StepProblem,
@@ -302,8 +301,8 @@ impl<'m> Workspace<'m> {
         Ok(())
     }
 
-    /// Acceleration at the start of a motion from M A = R + B^T P - F, with supports at rest; forces on nodes without
-    /// mass go to the nodes that carry their mass.
+    /// Acceleration at the start of a motion from M A = R + B^T P - F, with supports at rest. Forces on nodes without
+    /// mass act on the nodes that carry their mass.
     pub fn start_acceleration(
         &mut self,
         problem: &StepProblem,
@@ -334,7 +333,7 @@ impl<'m> Workspace<'m> {
         a
     }
 
-    /// A node that has entered a body between `u0` and `u1`; see [`find_penetration`].
+    /// A node that has entered a body between the displacements `u0` and `u1`; see [`find_penetration`].
     pub fn find_penetration(
         &mut self,
         [u0, u1]: [&[f64]; 2],
