@@ -19,8 +19,8 @@ const HOURGLASS: f64 = 0.05;
 /// Part of the largest energy of a run below which its strain energy does not matter.
 const SMALL: f64 = 1e-3;
 
-/// Largest energy of hourglass modes as a part of the largest strain energy(with the energy that materials have
-/// dissipated); 0 if this energy is small compared with the largest energy of the run.
+/// Largest energy of hourglass modes as a part of the largest strain energy (with the energy that materials
+/// have dissipated); 0 if this energy is small compared with the largest energy of the run.
 pub(super) fn hourglass_part([hourglass, internal]: [f64; 2], largest: f64) -> f64 {
     match internal > SMALL * largest {
         true => hourglass / internal,

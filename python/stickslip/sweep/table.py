@@ -84,7 +84,7 @@ def columns(parameters: Sequence[str], quantities: Sequence[Quantity]) -> list[s
 
 
 def _row(task: Task, lost: Mapping[str, str], quantities: list[Quantity]) -> dict[str, Any]:
-    """The row of a point."""
+    """The row of the result table for a point of the study."""
     known = task.row() or {}
     if task.name in lost:
         known = {"exit_status": LOST, "message": lost[task.name]}

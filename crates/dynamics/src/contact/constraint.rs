@@ -186,9 +186,9 @@ impl Constraint {
         self.product(&self.derivative_rows().tangential, |dof| v[dof])
     }
 
-    /// A gap or slip of the pair (length), or 0 if the value is negligible against the length of the segment, eq.
-    /// (4.21). The remains of a motion that has died away must not become the scale of a complementarity problem, whose
-    /// forces would underflow.
+    /// A gap or slip of the pair (length), or 0 if the value is negligible against the segment length, eq. (4.21). The
+    /// remains of a motion that has died away must not become the scale of a complementarity problem, whose forces would
+    /// underflow.
     pub fn resolved(&self, length: f64) -> f64 {
         match length.abs() < NOTHING * self.scale {
             true => 0.0,

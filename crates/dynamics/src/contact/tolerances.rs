@@ -29,8 +29,8 @@ pub(crate) const FOLDED_CORNER_SINE: f64 = 0.3;
 /// Distance (in side lengths of the element) by which a line may pass outside an element and still
 /// count as inside: round-off of coordinates.
 pub(crate) const INSIDE_ROUND_OFF: f64 = 1e-9;
-/// Length of the line that is followed into the body behind a node, in depths of the node: a node
-/// whose line leaves the body is nearer to the far side.
+/// Length of the line from a penetrating node through the body, relative to the depth of the node. If the line leaves
+/// the body within this length, the node is nearer to the far side of the body.
 pub(crate) const NEARER_HALF: f64 = 2.0;
 /// Entry of Bn over the unknowns below which equations keep a node on its segment, so the entry is round-off of weights
 /// and directions. The largest entry of Bn is of the order of 1.

@@ -108,7 +108,7 @@ impl Number for f64 {
 #[repr(align(16))]
 pub struct Lanes(pub [f64; LANES]);
 
-/// For every element whether all its numbers so far were positive; if so, all bits of the entry are set.
+/// A flag for every element in the lanes: all bits are set as long as all numbers of the element were positive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Positive([u64; LANES]);
 

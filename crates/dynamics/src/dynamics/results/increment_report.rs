@@ -34,7 +34,8 @@ pub struct SolverCounts {
     pub residual: f64,
     /// Errors of the pairs against the contact law at the end of the increment.
     pub violation: ContactViolation,
-    /// Largest force that holds a motion which only facets resist, relative to the normal forces on the body.
+    /// Largest force on a held motion, which only the facets of a contact surface resist, relative to the normal forces
+    /// on the body.
     pub held: f64,
     /// Whether the increment converged.
     pub converged: bool,
