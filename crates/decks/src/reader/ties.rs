@@ -39,7 +39,7 @@ struct TieRow {
     slave: usize,
     master: usize,
     reach: TieReach,
-    /// Members of the set that the reach names, in increasing order.
+    /// Nodes of the set that `reach` names, in increasing order.
     members: Vec<usize>,
     formulation: ContactFormulation,
     adjusts: bool,

@@ -224,7 +224,8 @@ impl<'a, const M: usize> BentMetal<'a, M> {
         y - self.flown * (1.0 + self.kinematic)
     }
 
-    /// The square m of the modes, and half the derivative 3 mu/V Kh x of m with respect to the amplitudes y.
+    /// The measure m, a square of the amplitudes y of the modes, and 3 mu/V Kh x: half the derivative of m with respect
+    /// to y.
     fn square(&self, y: &SVector<f64, M>) -> (f64, SVector<f64, M>) {
         let x = self.relative(y);
         let half = self.stiffness * x * (self.shear() / self.volume);
