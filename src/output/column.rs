@@ -238,7 +238,7 @@ fn rows_of(rows: usize, row: &[usize]) -> Vec<usize> {
 /// [`Column`], because otherwise the same code would be compiled for each of about 160 datasets.
 type Values<'m, R, T> = Box<dyn FnMut(&R, &mut Vec<T>) + 'm>;
 
-/// A dataset that grows by rows; `values` appends the rows of a report to those that wait in memory.
+/// A dataset that grows by rows. The function `values` appends the rows of a report to the rows that wait in memory.
 struct Column<'m, R, T> {
     dataset: Dataset,
     layout: Layout,

@@ -81,7 +81,7 @@ struct FieldGroup<'m> {
     /// Group with the first rows of the frames; it has one dataset, which is linked under the name of every field.
     offsets: Group,
     first_field: Option<&'static str>,
-    /// The datasets of these fields, and those that were created before them.
+    /// All datasets of a frame: the datasets of the fields, and the datasets that were created before.
     columns: GrowingColumns<'m, Frame>,
     /// Number of rows of a frame.
     rows: usize,

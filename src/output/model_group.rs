@@ -13,13 +13,13 @@ use crate::model::{ALL_EXTERIOR, Bodies, Contact, Instance, Mesh, Model, Set};
 pub(crate) fn write(root: &Group, model: &Model) -> hdf5::Result<()> {
     let (mesh, at) = (&model.mesh, group(root, "model")?);
     let labels = mesh.node_labels.iter().map(|&label| label as i64);
-    let text = "node numbers: those of the deck, own ones in instances";
+    let text = "node numbers of the deck; nodes of instances have numbers of the program";
     numbers(&at, "node_labels", labels, text)?;
     let coordinates = mesh.coordinates.as_flattened();
     let shape = [mesh.node_count(), 2];
     constant(&at, "coordinates", &shape, coordinates, COORDINATES)?;
     let labels = mesh.elements.iter().map(|element| element.label as i64);
-    let text = "element numbers: those of the deck, own ones in instances";
+    let text = "element numbers of the deck; elements of instances have numbers of the program";
     numbers(&at, "element_labels", labels, text)?;
     let text = "node indices of all elements, one element after the other";
     numbers(&at, "connectivity", connectivity(mesh), text)?;

@@ -154,7 +154,7 @@ impl<'a> ResultWriter<'a> {
         archive.transfer(&mut self.numbers)
     }
 
-    /// Transfers the state of the files; returns that of the status file.
+    /// Transfers the state of the files, and returns the state of the status file.
     fn transfer(
         &mut self,
         archive: &mut Archive,

@@ -4,7 +4,7 @@
 use nalgebra::DMatrix;
 
 use super::bulge::{Bulge, Lift};
-use super::constraint::{Configurations, Constraint, RowForm};
+use super::constraint::{Configurations, Constraint};
 use super::keys::{ConstraintKey, NodeAtSegment};
 use super::positions::Positions;
 use super::projection::project;
@@ -43,10 +43,6 @@ impl Constraint {
     pub fn gap_and_scale(&self, at: &Configurations) -> (f64, f64) {
         match &self.source.target {
             Target::Segment(segment) => segment.gap_and_scale(&self.source.pair, at),
-            // that of a discrete gradient depends on the start, eq. (7.9)
-            Target::Mean(mean) if at.form == RowForm::End => {
-                mean.gap_and_scale(&self.source.pair, at)
-            }
             Target::Corner(_) | Target::Mean(_) | Target::Disc(_) => {
                 let other = self.relinearized(at);
                 (other.gap, other.scale)

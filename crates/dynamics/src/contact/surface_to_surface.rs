@@ -668,18 +668,6 @@ impl MeanContact {
         (nodes, slaves)
     }
 
-    /// Mean of the gaps of the points in the iterate, eq. (3.18).
-    fn mean_gap(&self, at: &Configurations) -> f64 {
-        self.points.iter().map(|q| q.weight * q.gaps(at)[0]).sum()
-    }
-
-    /// Gap of the constraint in the end configuration, and the length to which the gap is relative.
-    pub(super) fn gap_and_scale(&self, pair: &Pair, at: &Configurations) -> (f64, f64) {
-        let length = |q: &SurfacePoint| q.weight * q.projection(at).length;
-        let scale = self.points.iter().map(length).sum();
-        (self.mean_gap(at) + pair.allowed[1], scale)
-    }
-
     /// The constraint of a slave node: gaps and rows of its points, summed with their weights,
     ///
     /// ```text
@@ -697,7 +685,7 @@ impl MeanContact {
         let mut sums: [PerDof<f64>; 4] = from_fn(|_| PerDof::zeros(2 * nodes.len()));
         let mut at_nodes = sums.each_mut().map(|row| row.as_chunks_mut::<2>().0);
         let [allowed_before, allowed] = pair.allowed;
-        let mean = self.mean_gap(at);
+        let mean: f64 = (self.points.iter().map(|q| q.weight * q.gaps(at)[0])).sum();
         let (mut gap, mut scale, mut turn) = (mean + allowed, 0.0, 0.0);
         let mut stretch = 0.0;
         for point in self.points.iter() {

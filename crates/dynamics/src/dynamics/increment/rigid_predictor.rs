@@ -46,10 +46,7 @@ pub(super) fn rigid_predictor(
     let (body_of, dt) = (problem.parts.of_nodes(), interval.dt);
     let holds = holds(problem);
     let prescribed = (problem.unknowns).prescribed_increment([&start.u; 2], interval.end);
-    let motions = match holds.iter().all(|&hold| hold == Hold::Held) {
-        true => vec![RigidMotion::default(); holds.len()],
-        false => motions(problem, &holds, start, dt, &prescribed),
-    };
+    let motions = motions(problem, &holds, start, dt, &prescribed);
     let of_supports = of_all_supports(problem, &start.u, &prescribed);
     for (node, &body) in body_of.iter().enumerate() {
         let RigidMotion {
